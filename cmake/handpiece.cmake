@@ -20,7 +20,8 @@ target_compile_options(handpiece_options INTERFACE
 # Makes a fault in a reader of files harder to use. What the loader has written is read-only in every build; the checks
 # of stacks and of lengths are for what is shipped, since an object that has them is another than one that has not.
 if(NOT HANDPIECE_SANITIZE)
-    target_link_options(handpiece_options INTERFACE $<BUILD_INTERFACE:LINKER:-z,relro,-z,now>
+    # What a room is built with and this program does not use (PostgreSQL, by a station) is no need of it.
+    target_link_options(handpiece_options INTERFACE $<BUILD_INTERFACE:LINKER:--as-needed,-z,relro,-z,now>
         $<BUILD_INTERFACE:$<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-pie>>)
 endif()
 if(CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT HANDPIECE_SANITIZE)

@@ -33,7 +33,7 @@ replayed and measured, drivers for haptic arms that are loaded at run time.")
 set(CPACK_DEBIAN_DEV_PACKAGE_NAME handpiece-dev)
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev, libtbb-dev, libtomlplusplus-dev, libopenal-dev, libsndfile1-dev, libqhull-dev, libzip-dev, libhdf5-dev, zlib1g-dev, libpng-dev, libtiff-dev, libjpeg-dev, libgdcm-dev, libegl-dev, libopengl-dev, libdbus-1-dev, libsqlite3-dev")
+    "libeigen3-dev, libfmt-dev, libtbb-dev, libtomlplusplus-dev, libopenal-dev, libsndfile1-dev, libqhull-dev, libzip-dev, libhdf5-dev, zlib1g-dev, libpng-dev, libtiff-dev, libjpeg-dev, libgdcm-dev, libegl-dev, libopengl-dev, libdbus-1-dev, libsqlite3-dev, libpq-dev, libsodium-dev")
 set(CPACK_COMPONENT_DEV_DESCRIPTION
 "Build your own programs on the simulator's library.
 Headers, static libraries and the files for find_package(handpiece).")

@@ -31,5 +31,6 @@ void addRubricCommand(Command& app);
 void addScoreCommand(Command& app);
 void addRescoreCommand(Command& app);
 void addAgreeCommand(Command& app);
+void addSchoolCommands(Command& app);
 
 }  // namespace handpiece::cli

@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-// handpiece export: a session's samples or events as CSV; what is left of each tissue as STL.
+// handpiece export: a session's samples or events as CSV; what is left of each tissue as STL; results as xAPI.
 #include <fmt/format.h>
 
 #include <filesystem>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cli/commands.h"
 #include "handpiece/app/simulation/tissue_export.h"
+#include "handpiece/app/statements/statements.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/tissue.h"
 #include "handpiece/record/session/session_reader.h"
+#include "handpiece/school/store/store.h"
 #include "studies/csv.h"
 #include "studies/progress_bar.h"
 
@@ -21,7 +25,8 @@ namespace {
 
 struct ExportOptions {
     std::string session, out = "-";
-    bool csv = false, events = false, stl = false, noCache = false;
+    bool csv = false, events = false, stl = false, xapi = false, noCache = false;
+    statements::Actor actor;
     double voxelUm = 50.0;
     std::size_t threads = 0;
 };
@@ -97,9 +102,28 @@ void exportSurfaces(const ExportOptions& o) {
         fmt::print("{}\n", file.string());
 }
 
+/// Whatever the store of results holds.
+void exportStatements(const ExportOptions& o) {
+    if (o.csv || o.events || o.stl)
+        throw core::Error("statements are not written with anything else", "export", "give --xapi alone");
+    if (!std::filesystem::is_regular_file(o.session))
+        throw core::Error("there is no such file", o.session, "give the store of results, results.db");
+    school::Store store(o.session);
+    std::map<std::string, std::string> titles;
+    for (const school::Exercise& exercise : store.exercises())
+        titles[exercise.id] = exercise.title;
+    std::vector<statements::Work> works;
+    for (const school::Attempt& attempt : store.attempts())
+        works.push_back({attempt, titles[attempt.exercise], store.returnedOf(attempt.id)});
+    studies::TextWriter out(o.out);
+    out.write(statements::statementsOf(works, o.actor));
+    out.commit();
+}
+
 void exportSession(const ExportOptions& o) {
     if (o.stl) return exportSurfaces(o);
-    if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv or --stl");
+    if (o.xapi) return exportStatements(o);
+    if (!o.csv) throw core::Error("there is no format to export to", "export", "add --csv, --stl or --xapi");
     const session::SessionReader reader(o.session);
     studies::TextWriter out(o.out);
     if (o.events) {
@@ -113,17 +137,21 @@ void exportSession(const ExportOptions& o) {
 }  // namespace
 
 void addExportCommand(Command& app) {
-    Command command = app.subcommand("export", "A session's samples or events as a table; tissues as surfaces");
+    Command command =
+        app.subcommand("export", "A session's samples or events as a table; tissues as surfaces; results as xAPI");
     const auto options = std::make_shared<ExportOptions>();
     command
         .option("session", options->session,
                 "session file (.h5); one that was cut off is read as far as it goes. With --stl also an attempt or "
-                "a case: folder, .handpiece file or mesh")
+                "a case: folder, .handpiece file or mesh; with --xapi the store of results, results.db")
         .required();
     command.flag("--csv", options->csv, "as comma-separated values");
     command.flag("--events", options->events, "what happened at which tick, instead of the samples");
     command.flag("--stl", options->stl,
                  "what is left of each tissue as a closed surface of its own: enamel.stl, dentine.stl, ... (mm)");
+    command.flag("--xapi", options->xapi, "results as statements for a learning record store (xAPI 1.0.3, JSON)");
+    command.option("--person", options->actor.code, "of --xapi: the code that the school knows the person by");
+    command.option("--home-page", options->actor.homePage, "of --xapi: the school's address, https://...");
     command.option("--out", options->out, "file to write, - for standard output; of --stl the folder").showDefault();
     command.option("--voxel", options->voxelUm, "of --stl for a case or a mesh, voxel of the field [um], 10 to 400")
         .check(range(10.0, 400.0))
@@ -136,7 +164,8 @@ void addExportCommand(Command& app) {
         "One row a tick: pose of the bur's tip as read from the device, force on the hand, speed, what was removed.\n"
         "--stl writes the tooth as a session leaves it, as an attempt was saved, or as a case is.\n"
         "Example:\n  handpiece export session.h5 --csv --out session.csv\n"
-        "  handpiece export session.h5 --stl --out tissues");
+        "  handpiece export session.h5 --stl --out tissues\n"
+        "  handpiece export results.db --xapi --person s017 --home-page https://school.example --out statements.json");
     command.callback([options] { exportSession(*options); });
 }
 

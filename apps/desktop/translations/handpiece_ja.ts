@@ -2721,6 +2721,14 @@
         <translation>歯をウィンドウに開いて設定し直す（Ctrl+Shift+J）。</translation>
     </message>
     <message>
+        <source>The cemento-enamel junction rises so far beside the cavity that no height is left.</source>
+        <translation>セメント・エナメル境が窩洞の脇で高くなりすぎて、窩洞の高さが残らない。</translation>
+    </message>
+    <message>
+        <source>Make the cavity narrower or higher.</source>
+        <translation>窩洞を狭くするか、高くする。</translation>
+    </message>
+    <message>
         <source>The margin does not lie on the tooth.</source>
         <translation>マージンが歯の上にない。</translation>
     </message>

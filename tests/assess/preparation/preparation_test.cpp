@@ -159,6 +159,30 @@ TEST(Preparation, ClassThreeAndFiveAndAccessAndCrownLieWhereTheyShould) {
             EXPECT_TRUE(laid.zones->targetMm(p) >= 0.0 || -laid.whole->signedDistance(p) <= 1.0 + 1e-9);
         }
     }
+    // The gingival wall follows the junction, as the gingiva's margin does, and is nowhere nearer than asked.
+    for (const int fdi : {13, 33, 44, 36}) {
+        const cases::Tooth& tooth = toothOf(fdi);
+        const Laid laid = layOn(tooth, recipeOf("class-five"));
+        const zones::Cavity& cavity = laid.cavities.front();
+        const auto [low, high] = cavity.outline.bounds();
+        EXPECT_NEAR(high.x() - low.x(), 4.5, 1e-6) << fdi;
+        EXPECT_GE(high.y() - low.y(), 2.5 - 1e-6) << fdi;
+        const cases::Landmark* junction = nullptr;
+        for (const cases::Landmark& mark : tooth.landmarks)
+            if (mark.kind == cases::LandmarkKind::cementoEnamelJunction) junction = &mark;
+        double nearest = 1e9, farthest = 0.0;
+        for (const Vec3& p : junction->pointsMm) {
+            const Vec3 at = cavity.inTooth.applyInverse(p);
+            // Between the rounded corners.
+            if (tooth.buccalSign * p.y() < 0.0 || std::abs(at.x()) > 2.25 - 0.6) continue;
+            double up = 0.0;
+            while (cavity.outline.distanceMm({at.x(), at.y() + up}) > 0.0 && up < 5.0)
+                up += 0.005;
+            nearest = std::min(nearest, up), farthest = std::max(farthest, up);
+        }
+        EXPECT_GE(nearest, 0.75 - 0.006) << fdi;
+        EXPECT_LE(farthest, 0.75 + 0.35) << fdi;
+    }
     {
         const cases::Tooth& tooth = toothOf(46);
         const Laid laid = layOn(tooth, recipeOf("access"));

@@ -36,6 +36,7 @@ td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
 .thirds { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
 .slices img { max-height: 90mm; object-fit: contain; background: #000; }
 .frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
+label { display: inline-block; min-width: 8rem; } input, button { font: inherit; padding: 0.3rem 0.6rem; } a { color: #0b62a4; }
 figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }
 figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.3rem; }
@@ -44,7 +45,7 @@ code { font: 0.85rem/1.5 "DejaVu Sans Mono", Menlo, monospace; } pre { backgroun
 @media (prefers-color-scheme: dark) {
 body { color: #dfe4ec; background: #14181f; } h2 { border-color: #3a4250; } td { border-color: #2a313c; }
 tbody tr:hover { background: #1d232d; } .note, caption, figcaption { color: #9aa5b4; } .frame { background: #182230; } pre { background: #1d232d; }
-td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
+a { color: #6cb6ff; } td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
 @media print { body { font-size: 10.5pt; margin: 0; padding: 0; max-width: none; } h2 { break-after: avoid; }
 figure, tr, .frame { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
@@ -140,6 +141,41 @@ void HtmlReport::table(const std::vector<std::string>& header, const std::vector
         body_ += "</tr>\n";
     }
     body_ += "</tbody></table></div>\n";
+}
+
+void HtmlReport::linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
+                             std::string_view caption) {
+    body_ += "<div class=\"scroll\"><table>";
+    if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
+    body_ += "<thead><tr>";
+    for (const std::string& head : header)
+        body_ += fmt::format("<th scope=\"col\">{}</th>", escaped(head));
+    body_ += "</tr></thead><tbody>\n";
+    for (const std::vector<Cell>& row : rows) {
+        body_ += "<tr>";
+        for (const Cell& cell : row)
+            body_ += cell.address.empty()
+                         ? fmt::format("<td>{}</td>", escaped(cell.text))
+                         : fmt::format("<td><a href=\"{}\">{}</a></td>", escaped(cell.address), escaped(cell.text));
+        body_ += "</tr>\n";
+    }
+    body_ += "</tbody></table></div>\n";
+}
+
+void HtmlReport::form(std::string_view address, const std::vector<Field>& fields, std::string_view button) {
+    body_ += fmt::format("<form method=\"post\" action=\"{}\">\n", escaped(address));
+    for (const Field& f : fields) {
+        if (f.kind == "hidden")
+            body_ +=
+                fmt::format("<input type=\"hidden\" name=\"{}\" value=\"{}\">\n", escaped(f.name), escaped(f.value));
+        else
+            body_ += fmt::format(
+                "<p><label for=\"{0}\">{1}</label> <input id=\"{0}\" name=\"{0}\" type=\"{2}\" value=\"{3}\" "
+                "autocomplete=\"{4}\"></p>\n",
+                escaped(f.name), escaped(f.label), escaped(f.kind), escaped(f.value),
+                f.kind == "password" ? "current-password" : "username");
+    }
+    body_ += fmt::format("<p><button type=\"submit\">{}</button></p>\n</form>\n", escaped(button));
 }
 
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {

@@ -28,6 +28,15 @@ class HtmlReport {
         std::string name;
     };
 
+    /// A cell that may lead somewhere.
+    struct Cell {
+        std::string text, address{};
+    };
+    /// What a person fills in; `kind` as HTML has it: "text", "password", "hidden".
+    struct Field {
+        std::string name, label, kind = "text", value{};
+    };
+
     /// All text is escaped.
     explicit HtmlReport(std::string title);
     void heading(std::string_view text);
@@ -41,6 +50,11 @@ class HtmlReport {
     /// Cells "yes" and "no" are coloured.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                std::string_view caption = {});
+    /// As table(), cells as they are.
+    void linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
+                     std::string_view caption = {});
+    /// Sent to `address` by its one button.
+    void form(std::string_view address, const std::vector<Field>& fields, std::string_view button);
     /// What, and how much.
     void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.

@@ -248,7 +248,7 @@ class Finder {
     }
     void classFive() {
         const Cavity& cavity = laid_.cavities.front();
-        const auto [low, high] = cavity.outline.bounds();
+        const Vec2 high = cavity.outline.bounds().second;
         const Vec3 draw = cavity.inTooth.orientation * Vec3::UnitZ();
         // Its walls stand at the surface.
         const auto wall = [&](const Vec2& p) {
@@ -260,7 +260,7 @@ class Finder {
         };
         edge("width_mm", {high.x(), 0.0}, Vec3::UnitX(), 2.0);
         edge("height_mm", {0.0, high.y()}, Vec3::UnitY(), 1.0);  // the gingival wall stays
-        edge("over_cervix_mm", {0.0, low.y()}, Vec3::UnitY(), 1.0);
+        edge("over_cervix_mm", {0.0, -0.5 * number("height_mm")}, Vec3::UnitY(), 1.0);
         corner(cavity, high, Vec2(1.0, 1.0), wall(high));
         if (const auto hit = outermost(cavity.inTooth.apply(Vec3::Zero()), draw)) {
             const Vec3 normal = normalAt(*hit);

@@ -3,6 +3,7 @@
 // stands.
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -317,6 +318,80 @@ class Site {
         cavities_.push_back({pose, std::move(outline), {Floor::Kind::flat, toSurface - number("depth_mm"), 0.0}, 0.0});
     }
 
+    struct Curve {
+        double level, slope, bend;
+        [[nodiscard]] double at(double x) const { return level + x * (slope + x * bend); }
+    };
+    /// A parabola through the junction on both sides of `middle`, lifted until it is nowhere less than "over_cervix_mm"
+    /// over it: the gingiva's margin follows the junction, and so does the gingival wall.
+    [[nodiscard]] Curve besideJunction(const cases::Landmark& junction, double side, const Vec3& middle,
+                                       double halfWidth) const {
+        constexpr double kBeyondMm = 0.5;
+        constexpr std::size_t kFewest = 5;
+        std::vector<Vec2> places;
+        for (const Vec3& p : junction.pointsMm)
+            if (side * p.y() > 0.0 && std::abs(p.x() - middle.x()) <= halfWidth + kBeyondMm)
+                places.emplace_back(p.x() - middle.x(), p.z());
+        Curve curve{0.0, 0.0, 0.0};
+        if (places.size() >= kFewest) {
+            core::Mat3 square = core::Mat3::Zero();
+            Vec3 right = Vec3::Zero();
+            for (const Vec2& p : places) {
+                const Vec3 row(1.0, p.x(), p.x() * p.x());
+                square += row * row.transpose(), right += p.y() * row;
+            }
+            const Vec3 fit = square.ldlt().solve(right);
+            curve = {fit[0], fit[1], std::max(fit[2], 0.0)};
+        }
+        double lift = middle.z() - curve.at(0.0);
+        for (const Vec2& p : places)
+            if (std::abs(p.x()) <= halfWidth) lift = std::max(lift, p.y() - curve.at(p.x()));
+        curve.level += lift + number("over_cervix_mm");
+        return curve;
+    }
+    /// Outline between a curve below and a level line at `half`, its corners rounded.
+    [[nodiscard]] std::vector<Vec2> onCurve(const Curve& below, double halfWidth, double half) const {
+        constexpr double kLeastMm = 0.2, kStepMm = 0.05, kQuarter = 0.5 * std::numbers::pi;
+        const auto normal = [&](double x) { return Vec2(-below.slope - 2.0 * x * below.bend, 1.0).normalized(); };
+        struct Corners {
+            double x, lower, upper;  ///< where the lower one rests on the curve; radii
+            Vec2 centre;             ///< of the lower one
+        };
+        const auto cornersAt = [&](double side) -> Corners {
+            const double wall = half - below.at(side * halfWidth);
+            if (wall < kLeastMm)
+                fail("the cemento-enamel junction rises so far beside the cavity that no height is left there",
+                     "make it narrower or higher", "lay-junction-steep");
+            const double asked = std::min(number("corner_mm"), 0.98 * halfWidth);
+            Corners c{0.0, std::min(asked, 0.49 * wall), 0.0, Vec2::Zero()};
+            if (below.bend > 0.0) c.lower = std::min(c.lower, 0.45 / below.bend);  // the curve's own is 1 / 2 bend
+            double in = 0.0, out = side * halfWidth;
+            for (int i = 0; i < 60; ++i) {
+                c.x = 0.5 * (in + out);
+                c.centre = Vec2(c.x, below.at(c.x)) + c.lower * normal(c.x);
+                (side * c.centre.x() < halfWidth - c.lower ? in : out) = c.x;
+            }
+            c.upper = std::min(asked, half - c.centre.y());
+            return c;
+        };
+        const Corners left = cornersAt(-1.0), right = cornersAt(1.0);
+        std::vector<Vec2> points;
+        const auto round = [&](const Vec2& centre, double radius, double fromRad, double toRad) {
+            for (const Vec2& p : zones::arc(centre, radius, fromRad, toRad))
+                points.push_back(p);
+        };
+        const auto downRad = [&](double x) { return core::atan2(-normal(x).y(), -normal(x).x()); };
+        const int steps = std::max(1, static_cast<int>(std::ceil((right.x - left.x) / kStepMm)));
+        for (int i = 0; i <= steps; ++i) {
+            const double x = left.x + (right.x - left.x) * i / steps;
+            points.emplace_back(x, below.at(x));
+        }
+        round(right.centre, right.lower, downRad(right.x), 0.0);
+        round({halfWidth - right.upper, half - right.upper}, right.upper, 0.0, kQuarter);
+        round({left.upper - halfWidth, half - left.upper}, left.upper, kQuarter, 2.0 * kQuarter);
+        round(left.centre, left.lower, -2.0 * kQuarter, downRad(left.x));
+        return points;
+    }
     void classFive() {
         const double sign = buccal();
         const Vec3 draw(0.0, sign, 0.0);
@@ -329,11 +404,12 @@ class Site {
                 cervix = &p;
         if (cervix == nullptr)
             fail("the cemento-enamel junction does not reach the buccal side", "set it anew", "lay-junction-short");
-        const double half = 0.5 * number("height_mm");
-        const Vec3 at(cervix->x(), cervix->y(), cervix->z() + number("over_cervix_mm") + half);
+        const double halfWidth = 0.5 * number("width_mm"), half = 0.5 * number("height_mm");
+        const Curve wall = besideJunction(*junction, sign, *cervix, halfWidth);
+        const Vec3 at(cervix->x(), cervix->y(), wall.at(0.0) + half);
         Outline outline;
-        outline.areas = {roundRectangle(Vec2::Zero(), Vec2(0.5 * number("width_mm"), half),
-                                        std::min({number("corner_mm"), 0.49 * number("width_mm"), 0.98 * half}))};
+        // The frame's +x goes towards -x on the +y side.
+        outline.areas = {onCurve({wall.level - at.z(), -sign * wall.slope, wall.bend}, halfWidth, half)};
         // Not as deep as the tooth's other side.
         cavities_.push_back({facing(draw, Vec3::UnitZ(), at),
                              std::move(outline),

@@ -34,6 +34,9 @@ constexpr double kNodeMm = 0.4, kNearMm = 1.0;
 /// The gingiva reaches so far into a tooth: the edge of its socket, as jagged as its triangles are large, lies unseen,
 /// and its margin is where its own smooth surface meets the tooth.
 constexpr double kIntoToothMm = 0.3;
+/// Its highest place lies so far inside; farther in it goes down again, or a bur that cuts just over the margin would
+/// press what nobody sees.
+constexpr double kHighestInsideMm = 0.15, kFallsInside = 1.5;
 constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
 constexpr double kWidestSeptum = 2.1, kWidestPapilla = 1.9;
 /// Under it the gingiva between two teeth that stand apart widens on as their roots taper, or a pit is left there.
@@ -48,6 +51,12 @@ constexpr double kSteepest = 4.0;  ///< Lipschitz bound of all that follows
 double blend(double a, double b, double width, double cap) {
     const double share = std::clamp(1.0 - std::max(a, b) / cap, 0.0, 1.0);
     return share > 0.0 ? smoothMin(a, b, width * share) : std::min(a, b);
+}
+
+/// A distance from a tooth as the margin of the gingiva takes it: it grows again deep inside.
+double asMarginTakes(double distanceMm) {
+    return distanceMm > -kHighestInsideMm ? distanceMm
+                                          : -kHighestInsideMm - kFallsInside * (distanceMm + kHighestInsideMm);
 }
 
 /// Piecewise linear through points with x rising; level beyond them.
@@ -261,7 +270,7 @@ class Arch {
                     const double fromMiddle = std::min(1.0, std::abs(2.0 * seen.aboveCervix / s.rootMm() + 1.0));
                     ligament = kLigamentMm + (kLigamentAtEndsMm - kLigamentMm) * fromMiddle * fromMiddle;
                 }
-                roll = blend(roll, seen.distance - through(kRoll, seen.aboveCervix), 1.6, kRollCap);
+                roll = blend(roll, asMarginTakes(seen.distance) - through(kRoll, seen.aboveCervix), 1.6, kRollCap);
                 plate = blend(plate, seen.distance - through(kPlate, seen.aboveCervix), 2.0, kPlateCap);
             }
             if (i > 0 && std::min(seen.distance, before.distance) < kFarMm) {
@@ -273,7 +282,7 @@ class Arch {
                 // Between two teeth, not over the faces of narrow ones: the farther of the two counts more.
                 const double one = seen.distance, two = before.distance;
                 const double between = core::hypot(std::max(one, 0.0), std::max(two, 0.0)) / std::numbers::sqrt2 +
-                                       0.5 * std::min({one, two, 0.0});
+                                       0.5 * asMarginTakes(std::min({one, two, 0.0}));
                 papilla = std::min(papilla, between - wide);
                 // The crest between two teeth runs level, from under the one's junction to under the other's.
                 if (std::max(one, two) < kFarMm) {

@@ -8,7 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
-#include "handpiece/school/store/database.h"
+#include "handpiece/school/store/database_sqlite.h"
 
 namespace handpiece::school {
 namespace {
@@ -154,14 +154,14 @@ std::string newId() {
 }
 
 struct Store::State {
-    Database database;
+    SqliteDatabase database;
 };
 
 Store::Store(const std::filesystem::path& file, std::chrono::milliseconds patience) {
     std::error_code error;
     if (!file.parent_path().empty() && !std::filesystem::exists(file, error))
         core::prepareOutputFolder(file.parent_path(), true);
-    state_.reset(new State{{file, patience}});
+    state_.reset(new State{{file, patience, {}}});
     Database& database = state_->database;
     // In a journal beside it: one file when nobody writes, and sound on a network's disk, where shared memory is not.
     database.run("PRAGMA journal_mode = DELETE; PRAGMA synchronous = EXTRA; PRAGMA foreign_keys = ON");

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The commands of handpiece-school: one function each.
+
+#include "cli/command.h"
+
+namespace handpiece::school_cli {
+
+void addServeCommand(cli::Command& app);
+/// On the server's machine: code, person, exercise, assign, results.
+void addBooksCommands(cli::Command& app);
+/// On a station: enrol, push, status.
+void addStationCommands(cli::Command& app);
+
+}  // namespace handpiece::school_cli

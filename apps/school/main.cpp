@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "cli/app.h"
+#include "school/commands.h"
+
+int main(int argc, char** argv) {
+    return handpiece::cli::runApp(
+        argc, argv,
+        {"handpiece-school", "A school's server, and a station's way to it", [](handpiece::cli::Command& top) {
+             handpiece::school_cli::addServeCommand(top);
+             handpiece::school_cli::addBooksCommands(top);
+             handpiece::school_cli::addStationCommands(top);
+         }});
+}

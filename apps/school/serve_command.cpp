@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+// handpiece serve: the school's server.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <charconv>
+#include <memory>
+#include <thread>
+
+#include "handpiece/base/core/error.h"
+#include "school/commands.h"
+#include "school/server.h"
+#include "school/worker.h"
+#include "studies/progress_bar.h"
+
+namespace handpiece::school_cli {
+namespace {
+
+struct ServeOptions {
+    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key;
+    std::size_t workers = 1;
+    bool worker = false;
+};
+
+void waitForInterrupt(const std::atomic<bool>& ended) {
+    while (!studies::cancelled() && !ended)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+void serve(const ServeOptions& o) {
+    std::atomic<bool> ended{false};
+    if (o.worker) {
+        school_server::Worker worker({o.data, o.database}, school_server::systemClock());
+        worker.start();
+        fmt::print("works for {} (Ctrl-C ends it)\n", o.database.empty() ? o.data : o.database);
+        (void)std::fflush(stdout);
+        waitForInterrupt(ended);
+        worker.stop();
+        return;
+    }
+    school_server::Settings settings;
+    settings.data = o.data, settings.database = o.database;
+    settings.certificate = o.certificate, settings.key = o.key;
+    settings.workers = o.workers;
+    const std::size_t colon = o.listen.rfind(':');
+    settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
+    if (settings.host.size() > 2 && settings.host.front() == '[')
+        settings.host = settings.host.substr(1, settings.host.size() - 2);
+    if (colon != std::string::npos) {
+        const char *from = o.listen.data() + colon + 1, *to = o.listen.data() + o.listen.size();
+        const auto [end, ec] = std::from_chars(from, to, settings.port);
+        if (ec != std::errc() || end != to || settings.port < 0 || settings.port > 65535)
+            throw core::Error(fmt::format("\"{}\" is no address to listen at", o.listen), "--listen",
+                              "give HOST:PORT, as 127.0.0.1:8620");
+    }
+    school_server::Server server(settings);
+    fmt::print("{}://{}:{} (Ctrl-C ends it)\n", o.certificate.empty() ? "http" : "https", settings.host, server.port());
+    (void)std::fflush(stdout);
+    std::thread ending([&] {
+        waitForInterrupt(ended);
+        server.stop();
+    });
+    server.run();
+    ended = true;
+    ending.join();
+}
+
+}  // namespace
+
+void addServeCommand(cli::Command& app) {
+    cli::Command command = app.subcommand("serve", "The school's server: takes what stations push, and scores it");
+    const auto options = std::make_shared<ServeOptions>();
+    ServeOptions& o = *options;
+    command.option("--data", o.data, "the server's folder").showDefault();
+    command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
+    command.option("--listen", o.listen, "HOST:PORT; port 0: any that is free").showDefault();
+    command.option("--certificate", o.certificate, "TLS of its own: certificate (PEM), with --key");
+    command.option("--key", o.key, "its key (PEM)");
+    command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do")
+        .check(cli::range(std::size_t{0}, std::size_t{64}))
+        .showDefault();
+    command.flag("--worker", o.worker, "only work: cut sessions again for the same books");
+    command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
+    command.callback([options] { serve(*options); });
+}
+
+}  // namespace handpiece::school_cli

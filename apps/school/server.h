@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// A school's server: what stations push goes into its books, is cut again, and scored. The one place that speaks HTTP.
+/// docs/school.md.
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "handpiece/school/store/books.h"
+
+namespace handpiece::school_server {
+
+struct Settings {
+    std::filesystem::path data;  ///< its folder
+    std::string database{};      ///< empty: SQLite in it; else postgresql://...
+    std::string host = "127.0.0.1";
+    int port = 8620;                   ///< 0: any that is free
+    std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
+    std::size_t threads = 64;          ///< each serves one connection
+    std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
+};
+/// Since 1970, UTC.
+using Clock = std::function<school::Milliseconds()>;
+[[nodiscard]] Clock systemClock();
+
+/// Who may call a route.
+/// A person is one who is logged in, by a cookie; what they may see is looked at page by page (pages.h).
+enum class Caller { anyone, station, person };
+struct Route {
+    std::string method, pattern;  ///< a regular expression that has to match the whole path
+    Caller caller;
+};
+class Server {
+  public:
+    /// Opens the books and the port. Throws core::Error, also "port-taken".
+    explicit Server(const Settings& settings, Clock clock = systemClock());
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    /// All there are: what is not in here is answered with 404.
+    [[nodiscard]] static std::vector<Route> routes();
+
+    [[nodiscard]] int port() const;
+    /// Serves until stop(), which may be called from another thread or a signal's.
+    void run();
+    void stop();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+}  // namespace handpiece::school_server

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/station.h"
+
+#include <fmt/format.h>
+#include <httplib.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/school/store/content_files.h"
+
+namespace handpiece::school_station {
+namespace {
+
+namespace fs = std::filesystem;
+using school_wire::Received;
+
+constexpr auto kPatience = std::chrono::seconds(20);
+
+core::Error silent(const std::string& server, const std::string& why) {
+    return core::Error(fmt::format("nobody answers there ({})", why), server,
+                       "try again when the network is there: nothing is lost until then")
+        .as("server-silent", {server, why});
+}
+
+class Line {
+  public:
+    Line(const std::string& server, std::string key) : server_(server), http_(checked(server)) {
+        http_.set_connection_timeout(kPatience);
+        http_.set_read_timeout(kPatience);
+        http_.set_write_timeout(kPatience);
+        http_.set_keep_alive(true);
+        httplib::Headers headers{{"Handpiece-Protocol", std::to_string(school_wire::kProtocol)}};
+        if (!key.empty()) headers.emplace("Authorization", "Bearer " + key);
+        http_.set_default_headers(headers);
+    }
+    std::string get(const std::string& path) { return heard(http_.Get(path)); }
+    std::string post(const std::string& path, const std::string& json) {
+        return heard(http_.Post(path, json, "application/json"));
+    }
+    std::string put(const std::string& path, const std::string& bytes) {
+        return heard(http_.Put(path, bytes, "application/octet-stream"));
+    }
+
+  private:
+    static const std::string& checked(const std::string& server) {
+        if (!server.starts_with("http://") && !server.starts_with("https://"))
+            throw core::Error("this is no address of a server", server, "give one as https://school.example:8620")
+                .as("server-address", {server});
+        return server;
+    }
+    std::string heard(const httplib::Result& result) const {
+        if (!result) throw silent(server_, httplib::to_string(result.error()));
+        if (result->status < 200 || result->status > 299) throw school_wire::errorFrom(result->body, result->status);
+        return result->body;
+    }
+
+    std::string server_;
+    httplib::Client http_;
+};
+
+/// What will be refused tomorrow as well.
+bool isFinal(const core::Error& error) {
+    constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged", "upload-mismatch"};
+    return std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
+}
+
+std::string pieceOf(const fs::path& file, std::uint64_t offset, std::size_t bytes) {
+    std::ifstream in(file, std::ios::binary);
+    std::string piece(bytes, '\0');
+    in.seekg(static_cast<std::streamoff>(offset));
+    if (!in.read(piece.data(), static_cast<std::streamsize>(bytes)))
+        throw core::Error("the recording cannot be read", file.string(), "see whether the disk is all right");
+    return piece;
+}
+
+class Pusher {
+  public:
+    Pusher(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file)
+        : store_(store),
+          sessions_(sessions),
+          enrolment_(enrolment),
+          file_(file),
+          line_(enrolment.server, enrolment.key) {}
+
+    Pushed run(const core::Progress& progress) {
+        const auto last = [&] {
+            std::int64_t to = enrolment_.sent;
+            for (auto some = store_.outbox(to); !some.empty(); some = store_.outbox(to))
+                to = some.back().sequence;
+            return to;
+        }();
+        const std::int64_t first = enrolment_.sent;
+        for (auto some = store_.outbox(enrolment_.sent); !some.empty(); some = store_.outbox(enrolment_.sent))
+            for (const school::Outgoing& one : some) {
+                try {
+                    send(one);
+                } catch (const core::Error& e) {
+                    if (!isFinal(e)) throw;
+                    pushed_.refused.push_back(fmt::format("{} {}: {}", one.kind, one.id, e.what()));
+                }
+                enrolment_.sent = one.sequence;
+                writeEnrolment(enrolment_, file_);
+                core::report(
+                    progress,
+                    last > first ? static_cast<double>(one.sequence - first) / static_cast<double>(last - first) : 1.0);
+            }
+        return std::move(pushed_);
+    }
+
+  private:
+    void send(const school::Outgoing& one) {
+        if (one.kind == "attempt") {
+            if (const auto attempt = store_.attempt(one.id)) sendAttempt(*attempt);
+        } else if (one.kind == "judgement") {
+            if (const auto judgement = store_.judgementOf(one.id)) {
+                (void)line_.post("/api/v1/judgements", school_wire::toJson(*judgement));
+                ++pushed_.judgements;
+            }
+        }
+    }
+    void sendAttempt(const school::Attempt& attempt) {
+        school::PushedAttempt p;
+        p.attempt = attempt;
+        p.person = enrolment_.person;
+        std::vector<fs::path> files;
+        for (const std::string& name : attempt.recordings)
+            files.push_back(sessions_ / fs::path(name).filename());
+        if (std::all_of(files.begin(), files.end(), [](const fs::path& f) { return core::isThere(f); }))
+            for (const fs::path& file : files)
+                p.files.push_back(school::sha256Of(file));
+        (void)line_.post("/api/v1/attempts", school_wire::toJson(p));
+        ++pushed_.attempts;
+        for (std::size_t i = 0; i < p.files.size(); ++i)
+            sendFile(files[i], p.files[i]);
+    }
+    void sendFile(const fs::path& file, const std::string& hash) {
+        const std::uint64_t bytes = fs::file_size(file);
+        Received there = school_wire::receivedFrom(line_.get(fmt::format("/api/v1/files/{}?bytes={}", hash, bytes)));
+        if (there.isWhole) return;
+        do {
+            if (there.bytes > bytes) throw core::Error("it has more of a file than there is", enrolment_.server);
+            const std::string piece = pieceOf(
+                file, there.bytes,
+                static_cast<std::size_t>(std::min<std::uint64_t>(bytes - there.bytes, school_wire::kMostPiece)));
+            there = school_wire::receivedFrom(
+                line_.put(fmt::format("/api/v1/files/{}?bytes={}&offset={}", hash, bytes, there.bytes), piece));
+            pushed_.bytes += piece.size();
+        } while (!there.isWhole && there.bytes < bytes);
+        ++pushed_.files;
+    }
+
+    school::Store& store_;
+    const fs::path& sessions_;
+    Enrolment& enrolment_;
+    const fs::path& file_;
+    Line line_;
+    Pushed pushed_;
+};
+
+}  // namespace
+
+Enrolment readEnrolment(const fs::path& file) {
+    if (!core::isThere(file))
+        throw core::Error("this station belongs to no school yet", file.string(),
+                          "enrol it: handpiece school enrol SERVER CODE --person CODE")
+            .as("not-enrolled");
+    constexpr std::size_t kMost = 1 << 16;
+    const std::vector<std::byte> bytes = core::readFile(file, kMost);
+    try {
+        const auto json = nlohmann::json::parse(reinterpret_cast<const char*>(bytes.data()),
+                                                reinterpret_cast<const char*>(bytes.data()) + bytes.size());
+        return {json.at("server"), json.at("station"), json.at("key"), json.at("person"), json.at("sent")};
+    } catch (const nlohmann::json::exception& e) {
+        throw core::Error(fmt::format("the enrolment cannot be read: {}", e.what()), file.string(),
+                          "enrol the station anew; its results stay");
+    }
+}
+
+void writeEnrolment(const Enrolment& e, const fs::path& file) {
+    const std::string text =
+        nlohmann::ordered_json{
+            {"server", e.server}, {"station", e.station}, {"key", e.key}, {"person", e.person}, {"sent", e.sent}}
+            .dump(1) +
+        "\n";
+    core::writeFile(file, text, {.ownerOnly = true});
+}
+
+Enrolment enrol(const std::string& server, const std::string& code, const std::string& person) {
+    Line line(server, {});
+    const school_wire::Enrolled made =
+        school_wire::enrolledFrom(line.post("/api/v1/enrol", school_wire::toJson(school_wire::Enrol{code})));
+    return {server, made.station, made.key, person, 0};
+}
+
+Pushed push(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file,
+            const core::Progress& progress) {
+    return Pusher(store, sessions, enrolment, file).run(progress);
+}
+
+school_wire::Status status(const Enrolment& enrolment) {
+    return school_wire::statusFrom(Line(enrolment.server, enrolment.key).get("/api/v1/status"));
+}
+
+}  // namespace handpiece::school_station

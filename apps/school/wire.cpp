@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/wire.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace handpiece::school_wire {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t kMostText = 4000, kMostResult = 3 << 20, kMostList = 200;
+constexpr double kMostNumber = 1e12;
+
+/// A message from somebody: every field is looked at before it is used.
+class Message {
+  public:
+    explicit Message(std::string_view text) {
+        if (text.size() > kMostMessage) fail("message", "is too long");
+        json_ = Json::parse(text, nullptr, false);
+        if (!json_.is_object()) fail("message", "is no JSON object");
+    }
+    [[nodiscard]] std::string text(const char* key, std::size_t most = kMostText) const {
+        const Json& found = at(key);
+        if (!found.is_string()) fail(key, "is no text");
+        std::string value = found.get<std::string>();
+        if (value.size() > most) fail(key, "is too long");
+        return value;
+    }
+    [[nodiscard]] double number(const char* key) const {
+        const Json& found = at(key);
+        if (!found.is_number()) fail(key, "is no number");
+        const double value = found.get<double>();
+        if (!std::isfinite(value) || std::abs(value) > kMostNumber) fail(key, "is no number that can be meant");
+        return value;
+    }
+    template <class T>
+    [[nodiscard]] T whole(const char* key) const {
+        const Json& found = at(key);
+        if (found.is_number_unsigned() && std::in_range<T>(found.get<std::uint64_t>()))
+            return static_cast<T>(found.get<std::uint64_t>());
+        if (!found.is_number_unsigned() && found.is_number_integer() && std::in_range<T>(found.get<std::int64_t>()))
+            return static_cast<T>(found.get<std::int64_t>());
+        fail(key, "is no whole number that can be meant");
+    }
+    [[nodiscard]] bool flag(const char* key) const {
+        const Json& found = at(key);
+        if (!found.is_boolean()) fail(key, "is neither true nor false");
+        return found.get<bool>();
+    }
+    [[nodiscard]] std::vector<std::string> texts(const char* key) const {
+        const Json& found = at(key);
+        if (!found.is_array() || found.size() > kMostList) fail(key, "is no list, or too long");
+        std::vector<std::string> all;
+        for (const Json& one : found) {
+            if (!one.is_string() || one.get_ref<const std::string&>().size() > kMostText)
+                fail(key, "is no list of texts");
+            all.push_back(one.get<std::string>());
+        }
+        return all;
+    }
+    [[nodiscard]] const Json& json() const { return json_; }
+
+  private:
+    [[noreturn]] static void fail(const char* key, const char* why) {
+        throw core::Error(fmt::format("\"{}\" {}", key, why), "message", "use programs that belong together")
+            .as("message-damaged", {key, why});
+    }
+    [[nodiscard]] const Json& at(const char* key) const {
+        const auto found = json_.find(key);
+        if (found == json_.end()) fail(key, "is missing");
+        return *found;
+    }
+    Json json_;
+};
+
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string toJson(const school::PushedAttempt& p) {
+    const school::Attempt& a = p.attempt;
+    return dumped({{"id", a.id},
+                   {"person", p.person},
+                   {"assignment", p.assignment},
+                   {"files", p.files},
+                   {"exercise", a.exercise},
+                   {"exercise_hash", a.exerciseHash},
+                   {"rubric_hash", a.rubricHash},
+                   {"session_hash", a.sessionHashes},
+                   {"began_ms", a.began},
+                   {"finished_ms", a.finished},
+                   {"device", a.device},
+                   {"motion_scale", a.motionScale},
+                   {"score", a.score},
+                   {"max_score", a.maxScore},
+                   {"whole_score", a.wholeScore},
+                   {"passed", a.passed},
+                   {"borderline", a.borderline},
+                   {"worked_s", a.workedS},
+                   {"limit_s", a.limitS},
+                   {"result", a.result}});
+}
+school::PushedAttempt attemptFrom(std::string_view json) {
+    const Message m(json);
+    school::PushedAttempt p;
+    school::Attempt& a = p.attempt;
+    a.id = m.text("id");
+    p.person = m.text("person"), p.assignment = m.text("assignment"), p.files = m.texts("files");
+    a.exercise = m.text("exercise"), a.exerciseHash = m.text("exercise_hash"), a.rubricHash = m.text("rubric_hash");
+    a.sessionHashes = m.texts("session_hash");
+    a.began = m.whole<school::Milliseconds>("began_ms"), a.finished = m.whole<school::Milliseconds>("finished_ms");
+    a.device = m.text("device"), a.motionScale = m.number("motion_scale");
+    a.score = m.number("score"), a.maxScore = m.number("max_score"), a.wholeScore = m.number("whole_score");
+    a.passed = m.text("passed"), a.borderline = m.flag("borderline");
+    a.workedS = m.number("worked_s"), a.limitS = m.number("limit_s");
+    a.result = m.text("result", kMostResult);
+    return p;
+}
+
+std::string toJson(const school::Judgement& j) {
+    return dumped({{"attempt", j.attempt}, {"percent", j.percent}, {"words", j.words}, {"made_ms", j.made}});
+}
+school::Judgement judgementFrom(std::string_view json) {
+    const Message m(json);
+    return {m.text("attempt"), m.number("percent"), m.text("words"), m.whole<school::Milliseconds>("made_ms")};
+}
+
+std::string toJson(const Enrolled& e) {
+    return dumped({{"station", e.station}, {"key", e.key}});
+}
+Enrolled enrolledFrom(std::string_view json) {
+    const Message m(json);
+    return {m.text("station"), m.text("key")};
+}
+std::string toJson(const Enrol& e) {
+    return dumped({{"code", e.code}});
+}
+Enrol enrolFrom(std::string_view json) {
+    return {Message(json).text("code", 200)};
+}
+
+std::string toJson(const Received& r) {
+    return dumped({{"bytes", r.bytes}, {"whole", r.isWhole}});
+}
+Received receivedFrom(std::string_view json) {
+    const Message m(json);
+    return {m.whole<std::uint64_t>("bytes"), m.flag("whole")};
+}
+
+std::string toJson(const Status& s) {
+    return dumped({{"server", s.server},
+                   {"protocol", s.protocol},
+                   {"engine", s.engine},
+                   {"station", s.station},
+                   {"missing", s.missing}});
+}
+Status statusFrom(std::string_view json) {
+    const Message m(json);
+    return {m.text("server"), m.whole<int>("protocol"), m.whole<std::int32_t>("engine"), m.text("station"),
+            m.texts("missing")};
+}
+
+std::string toJson(const core::Error& e) {
+    return dumped({{"error", e.id()},
+                   {"what", e.problem()},
+                   {"where", e.where()},
+                   {"remedy", e.remedy()},
+                   {"arguments", e.arguments()}});
+}
+core::Error errorFrom(std::string_view json, int status) {
+    try {
+        const Message m(json);
+        return core::Error(m.text("what"), "the school's server: " + m.text("where"), m.text("remedy"))
+            .as(m.text("error"), m.texts("arguments"));
+    } catch (const core::Error&) {
+        return core::Error(fmt::format("it answers {} and nothing that can be read", status), "the school's server",
+                           "ask whether this is its address")
+            .as("server-nonsense", {std::to_string(status)});
+    }
+}
+
+}  // namespace handpiece::school_wire

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What stations and a school's server tell each other, as JSON. docs/school.md#between-station-and-server.
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/school/store/books.h"
+
+namespace handpiece::school_wire {
+
+/// Of the messages below. A server answers a station of another one with what to do.
+inline constexpr int kProtocol = 1;
+inline constexpr std::size_t kMostMessage = 4 << 20, kMostPiece = 4 << 20;
+
+/// What a station pushes; the server fills in station and time.
+[[nodiscard]] std::string toJson(const school::PushedAttempt& attempt);
+[[nodiscard]] std::string toJson(const school::Judgement& judgement);
+/// Throw core::Error "message-damaged" (field, why) for what is none.
+[[nodiscard]] school::PushedAttempt attemptFrom(std::string_view json);
+[[nodiscard]] school::Judgement judgementFrom(std::string_view json);
+
+struct Enrolled {
+    std::string station, key;
+};
+[[nodiscard]] std::string toJson(const Enrolled& enrolled);
+[[nodiscard]] Enrolled enrolledFrom(std::string_view json);
+struct Enrol {
+    std::string code;
+};
+[[nodiscard]] std::string toJson(const Enrol& enrol);
+[[nodiscard]] Enrol enrolFrom(std::string_view json);
+
+/// Where a file stands.
+struct Received {
+    std::uint64_t bytes = 0;
+    bool isWhole = false;
+};
+[[nodiscard]] std::string toJson(const Received& received);
+[[nodiscard]] Received receivedFrom(std::string_view json);
+
+/// What the server knows of a station.
+struct Status {
+    std::string server;  ///< version of its program
+    int protocol = kProtocol;
+    std::int32_t engine = 0;
+    std::string station;
+    std::vector<std::string> missing;  ///< SHA-256 of files of its attempts that have not come
+};
+[[nodiscard]] std::string toJson(const Status& status);
+[[nodiscard]] Status statusFrom(std::string_view json);
+
+/// An error as the other side tells it, and back: what, where, what to do, and its name.
+[[nodiscard]] std::string toJson(const core::Error& error);
+[[nodiscard]] core::Error errorFrom(std::string_view json, int status);
+
+}  // namespace handpiece::school_wire

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "handpiece/school/store/books_state.h"
+
+namespace handpiece::school {
+namespace {
+
+/// What each version adds to the one before. None is ever changed: books of that version are out there. Written once
+/// for both: TEXT, INT8 and FLOAT8 are the types, STRICT is SQLite's alone (see inWordsOf).
+constexpr std::array<const char*, Books::kVersion> kMigrations = {
+    R"sql(
+CREATE TABLE people (code TEXT PRIMARY KEY, made INT8 NOT NULL, erased INT8 NOT NULL) STRICT;
+CREATE TABLE identities (
+  person TEXT PRIMARY KEY REFERENCES people (code), name TEXT NOT NULL, login TEXT NOT NULL, external TEXT NOT NULL,
+  password TEXT NOT NULL) STRICT;
+CREATE UNIQUE INDEX identities_by_login ON identities (login) WHERE login <> '';
+CREATE UNIQUE INDEX identities_by_external ON identities (external) WHERE external <> '';
+CREATE TABLE roles (
+  person TEXT NOT NULL REFERENCES people (code),
+  role TEXT NOT NULL CHECK (role IN ('student', 'teacher', 'examiner', 'administrator')),
+  PRIMARY KEY (person, role)) STRICT;
+CREATE TABLE classes (
+  id TEXT PRIMARY KEY, name TEXT NOT NULL, external TEXT NOT NULL, retention_days INT8 NOT NULL, made INT8 NOT NULL,
+  closed INT8 NOT NULL) STRICT;
+CREATE TABLE enrolments (
+  class TEXT NOT NULL REFERENCES classes (id), person TEXT NOT NULL REFERENCES people (code),
+  role TEXT NOT NULL CHECK (role IN ('student', 'teacher', 'examiner')), PRIMARY KEY (class, person)) STRICT;
+CREATE INDEX enrolments_by_person ON enrolments (person);
+CREATE TABLE files (hash TEXT PRIMARY KEY, bytes INT8 NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE rubrics (
+  hash TEXT PRIMARY KEY, id TEXT NOT NULL, version INT8 NOT NULL, text TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE packs (
+  hash TEXT PRIMARY KEY, file TEXT NOT NULL REFERENCES files (hash), exercise TEXT NOT NULL, title TEXT NOT NULL,
+  rubric TEXT NOT NULL REFERENCES rubrics (hash), made INT8 NOT NULL) STRICT;
+CREATE TABLE assignments (
+  id TEXT PRIMARY KEY, class TEXT NOT NULL REFERENCES classes (id), pack TEXT NOT NULL REFERENCES packs (hash),
+  rubric TEXT NOT NULL REFERENCES rubrics (hash), title TEXT NOT NULL,
+  kind TEXT NOT NULL CHECK (kind IN ('practice', 'exam')), helps TEXT NOT NULL, opens INT8 NOT NULL,
+  closes INT8 NOT NULL) STRICT;
+CREATE INDEX assignments_by_class ON assignments (class);
+CREATE TABLE stations (
+  id TEXT PRIMARY KEY, name TEXT NOT NULL, key_hash TEXT NOT NULL UNIQUE, enrolled INT8 NOT NULL,
+  revoked INT8 NOT NULL) STRICT;
+CREATE TABLE station_codes (
+  hash TEXT PRIMARY KEY, name TEXT NOT NULL, expires INT8 NOT NULL, station TEXT NOT NULL) STRICT;
+CREATE TABLE attempts (
+  id TEXT PRIMARY KEY, station TEXT NOT NULL REFERENCES stations (id), person TEXT NOT NULL REFERENCES people (code),
+  assignment TEXT NOT NULL, exercise TEXT NOT NULL, exercise_hash TEXT NOT NULL, rubric_hash TEXT NOT NULL,
+  session_hashes TEXT NOT NULL, began INT8 NOT NULL, finished INT8 NOT NULL, received INT8 NOT NULL,
+  device TEXT NOT NULL, motion_scale FLOAT8 NOT NULL, score FLOAT8 NOT NULL, max_score FLOAT8 NOT NULL,
+  whole_score FLOAT8 NOT NULL, passed TEXT NOT NULL CHECK (passed IN ('yes', 'no', 'teacher')),
+  borderline INT8 NOT NULL, worked_s FLOAT8 NOT NULL, limit_s FLOAT8 NOT NULL, content TEXT NOT NULL,
+  result TEXT NOT NULL) STRICT;
+CREATE INDEX attempts_by_assignment ON attempts (assignment, person, finished, id);
+CREATE INDEX attempts_by_person ON attempts (person, finished, id);
+CREATE TABLE attempt_files (
+  attempt TEXT NOT NULL REFERENCES attempts (id), place INT8 NOT NULL, file TEXT NOT NULL,
+  PRIMARY KEY (attempt, place)) STRICT;
+CREATE INDEX attempt_files_by_file ON attempt_files (file);
+CREATE TABLE judgements (
+  attempt TEXT PRIMARY KEY REFERENCES attempts (id), percent FLOAT8 NOT NULL, words TEXT NOT NULL,
+  made INT8 NOT NULL) STRICT;
+CREATE TABLE comments (
+  id TEXT PRIMARY KEY, attempt TEXT NOT NULL REFERENCES attempts (id), author TEXT NOT NULL REFERENCES people (code),
+  words TEXT NOT NULL, x_mm FLOAT8, y_mm FLOAT8, z_mm FLOAT8, t_s FLOAT8, made INT8 NOT NULL) STRICT;
+CREATE INDEX comments_by_attempt ON comments (attempt);
+CREATE TABLE shares (attempt TEXT PRIMARY KEY REFERENCES attempts (id), made INT8 NOT NULL) STRICT;
+CREATE TABLE marks (
+  id TEXT PRIMARY KEY, attempt TEXT NOT NULL REFERENCES attempts (id), marker TEXT NOT NULL REFERENCES people (code),
+  kind TEXT NOT NULL CHECK (kind IN ('teacher', 'examiner', 'blind', 'adjudication')), verdict TEXT NOT NULL,
+  points FLOAT8 NOT NULL, max_points FLOAT8 NOT NULL, marks TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE INDEX marks_by_attempt ON marks (attempt);
+CREATE TABLE jobs (
+  number INT8 PRIMARY KEY, campaign TEXT NOT NULL, attempt TEXT NOT NULL REFERENCES attempts (id),
+  rubric TEXT NOT NULL, made INT8 NOT NULL, state TEXT NOT NULL CHECK (state IN ('waiting', 'taken', 'done', 'failed')),
+  worker TEXT NOT NULL, lease_until INT8 NOT NULL, turn INT8 NOT NULL, UNIQUE (campaign, attempt)) STRICT;
+CREATE INDEX jobs_open ON jobs (number) WHERE state IN ('waiting', 'taken');
+CREATE INDEX jobs_by_attempt ON jobs (attempt);
+CREATE TABLE scores (
+  job INT8 PRIMARY KEY REFERENCES jobs (number), attempt TEXT NOT NULL REFERENCES attempts (id),
+  campaign TEXT NOT NULL, rubric TEXT NOT NULL, engine INT8 NOT NULL,
+  state TEXT NOT NULL CHECK (state IN ('proven', 'refused')), reason TEXT NOT NULL, state_hash TEXT NOT NULL,
+  score FLOAT8 NOT NULL, max_score FLOAT8 NOT NULL, whole_score FLOAT8 NOT NULL,
+  passed TEXT NOT NULL CHECK (passed IN ('yes', 'no', 'teacher')), borderline INT8 NOT NULL, worker TEXT NOT NULL,
+  made INT8 NOT NULL, result TEXT NOT NULL) STRICT;
+CREATE INDEX scores_by_attempt ON scores (attempt, job);
+CREATE TABLE audit (
+  number INT8 PRIMARY KEY, at INT8 NOT NULL, who TEXT NOT NULL, what TEXT NOT NULL, about TEXT NOT NULL,
+  detail TEXT NOT NULL) STRICT;
+CREATE INDEX audit_by_about ON audit (about, number);
+)sql",
+    R"sql(
+CREATE TABLE logins (
+  token_hash TEXT PRIMARY KEY, person TEXT NOT NULL REFERENCES people (code), made INT8 NOT NULL,
+  expires INT8 NOT NULL) STRICT;
+CREATE INDEX logins_by_person ON logins (person);
+)sql",
+};
+
+/// What is written once and never changed, also by whoever comes to the database by another way.
+constexpr std::array<std::string_view, 6> kStays = {"attempts UPDATE", "audit UPDATE",  "audit DELETE",
+                                                    "marks UPDATE",    "scores UPDATE", "rubrics UPDATE"};
+
+std::string replaced(std::string text, std::string_view from, std::string_view to) {
+    for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
+        text.replace(at, from.size(), to);
+    return text;
+}
+
+std::string inWordsOf(Database::Engine engine, std::string sql) {
+    if (engine == Database::Engine::sqlite) return replaced(replaced(sql, "INT8", "INTEGER"), "FLOAT8", "REAL");
+    // In the order of bytes, whatever the server's language: as SQLite has it.
+    return replaced(replaced(sql, ") STRICT;", ");"), " TEXT", " TEXT COLLATE \"C\"");
+}
+
+std::string guards(Database::Engine engine) {
+    std::string sql;
+    if (engine == Database::Engine::postgres)
+        sql =
+            "CREATE FUNCTION handpiece_stays() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
+            "RAISE EXCEPTION 'this is never changed'; END $$;";
+    for (const std::string_view stays : kStays) {
+        const std::string_view table = stays.substr(0, stays.find(' ')), action = stays.substr(stays.find(' ') + 1);
+        sql += fmt::format("CREATE TRIGGER {0}_{1}_stays BEFORE {1} ON {0} ", table, action);
+        sql += engine == Database::Engine::sqlite ? "BEGIN SELECT RAISE(ABORT, 'this is never changed'); END;"
+                                                  : "FOR EACH ROW EXECUTE FUNCTION handpiece_stays();";
+    }
+    return sql;
+}
+
+std::int64_t tables(Database& database, const std::string& which) {
+    const bool isSqlite = database.engine() == Database::Engine::sqlite;
+    const std::string sql = isSqlite ? "SELECT count(*) FROM sqlite_schema WHERE type = 'table'"
+                                     : "SELECT count(*) FROM pg_tables WHERE schemaname = current_schema()";
+    const std::string name = isSqlite ? "name" : "tablename";
+    return database.number((sql + (which.empty() ? "" : " AND " + name + " = '" + which + "'")).c_str());
+}
+
+std::int64_t versionOf(Database& database) {
+    if (tables(database, "handpiece_books") == 0) {
+        if (tables(database, "") == 0) return 0;
+        throw core::Error("this is a database of another program", database.where(),
+                          "name an empty database, or another folder")
+            .as("store-damaged", {"a database of another program"});
+    }
+    const std::int64_t version = database.number("SELECT version FROM handpiece_books");
+    if (version < 1)
+        throw core::Error(fmt::format("these books are damaged: version {}", version), database.where(),
+                          "restore a backup of it")
+            .as("store-damaged", {fmt::format("version {}", version)});
+    if (version > Books::kVersion)
+        throw core::Error(fmt::format("these books are of version {}, and this program knows {}", version,
+                                      static_cast<int>(Books::kVersion)),
+                          database.where(), "start the newer Handpiece")
+            .as("store-newer", {std::to_string(version), std::to_string(Books::kVersion)});
+    return version;
+}
+
+}  // namespace
+
+void bringUpBooks(Database& database) {
+    if (versionOf(database) == Books::kVersion) return;
+    Transaction transaction(database);
+    // Asked again now that nobody else can write: two programs may have come to the same old books.
+    const std::int64_t version = versionOf(database);
+    if (version == 0)
+        database.run(
+            inWordsOf(database.engine(), "CREATE TABLE handpiece_books (version INT8 NOT NULL) STRICT;").c_str());
+    for (std::int64_t next = version; next < Books::kVersion; ++next)
+        database.run(inWordsOf(database.engine(), kMigrations[static_cast<std::size_t>(next)]).c_str());
+    if (version == 0) database.run(guards(database.engine()).c_str());
+    database.run("DELETE FROM handpiece_books");
+    database.run(
+        fmt::format("INSERT INTO handpiece_books (version) VALUES ({})", static_cast<int>(Books::kVersion)).c_str());
+    transaction.commit();
+}
+
+}  // namespace handpiece::school

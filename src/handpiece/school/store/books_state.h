@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What the sources of Books share.
+
+#include <concepts>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "handpiece/base/core/error.h"
+#include "handpiece/school/store/books.h"
+#include "handpiece/school/store/database.h"
+
+namespace handpiece::school {
+
+/// Makes new books, brings older ones up; throws for another program's database and for a newer version.
+void bringUpBooks(Database& database);
+
+[[nodiscard]] core::Error unknown(const Database& database, const std::string& what, const std::string& which);
+[[nodiscard]] core::Error duplicate(const Database& database, const std::string& what, const std::string& which);
+[[nodiscard]] core::Error changed(const Database& database, const std::string& what, const std::string& which);
+[[nodiscard]] core::Error invalid(const std::string& field, const std::string& value, const std::string& remedy);
+
+/// Throws unless both databases keep it as it is: UTF-8 without a zero.
+void requireText(std::string_view text);
+/// Throws for infinity and what is no number; -0 becomes 0, which SQLite makes of it too.
+[[nodiscard]] double requireNumber(double number);
+
+struct Books::State {
+    std::unique_ptr<Database> database;
+    ContentFiles files;
+
+    /// A sentence with its values.
+    template <class... Values>
+    [[nodiscard]] Statement ask(const char* sql, const Values&... values) {
+        Statement statement(*database, sql);
+        (give(statement, values), ...);
+        return statement;
+    }
+    template <class... Values>
+    void run(const char* sql, const Values&... values) {
+        ask(sql, values...).run();
+    }
+    /// Whether there is a row.
+    template <class... Values>
+    [[nodiscard]] bool any(const char* sql, const Values&... values) {
+        return ask(sql, values...).next();
+    }
+    /// In a transaction that writes.
+    void note(const Act& act, const std::string& what, const std::string& about, const std::string& detail = {});
+    void requirePerson(const std::string& code);
+    void requireAttempt(const std::string& id);
+    void requireClass(const std::string& id);
+    /// In a transaction that writes: attempts that are whole by now wait to be scored.
+    void queueArrived(const std::string& attempt, Milliseconds now);
+    void keepFile(const std::string& hash, Milliseconds now);
+    /// Of a file that was deleted from the books: unless it came again in the meantime.
+    void removeFile(const std::string& hash);
+
+  private:
+    static void give(Statement& statement, std::string_view text) {
+        requireText(text);
+        statement.with(text);
+    }
+    template <std::integral Number>
+    static void give(Statement& statement, Number number) {
+        statement.with(static_cast<std::int64_t>(number));
+    }
+    static void give(Statement& statement, double number) { statement.with(requireNumber(number)); }
+    static void give(Statement& statement, const std::optional<double>& number) {
+        statement.with(number ? std::optional(requireNumber(*number)) : number);
+    }
+};
+
+}  // namespace handpiece::school

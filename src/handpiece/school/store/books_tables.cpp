@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+// The books as tables of text: whole, or what is held of one person.
+#include <fmt/format.h>
+
+#include <array>
+#include <string>
+#include <string_view>
+
+#include "handpiece/school/store/books_state.h"
+
+namespace handpiece::school {
+namespace {
+
+/// A column's kind stands before its name: t text, i whole number, r number. No passwords, keys, codes.
+struct Listed {
+    const char* table;
+    const char* columns;
+    const char* order;
+    const char* ofPerson;  ///< nullptr: nothing in it is of one person
+};
+#define HANDPIECE_OF_ATTEMPTS "attempt IN (SELECT id FROM attempts WHERE person = $1)"
+constexpr std::array kListed = {
+    Listed{"people", "t code, i made, i erased", "code", "code = $1"},
+    Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
+    Listed{"roles", "t person, t role", "person, role", "person = $1"},
+    Listed{"logins", "t person, i made, i expires", "person, made, expires", "person = $1"},
+    Listed{"classes", "t id, t name, t external, i retention_days, i made, i closed", "id", nullptr},
+    Listed{"enrolments", "t class, t person, t role", "class, person", "person = $1"},
+    Listed{"files", "t hash, i bytes, i made", "hash", nullptr},
+    Listed{"rubrics", "t hash, t id, i version, t text, i made", "hash", nullptr},
+    Listed{"packs", "t hash, t file, t exercise, t title, t rubric, i made", "hash", nullptr},
+    Listed{"assignments", "t id, t class, t pack, t rubric, t title, t kind, t helps, i opens, i closes", "id",
+           nullptr},
+    Listed{"stations", "t id, t name, i enrolled, i revoked", "id", nullptr},
+    Listed{"attempts",
+           "t id, t station, t person, t assignment, t exercise, t exercise_hash, t rubric_hash, t session_hashes, "
+           "i began, i finished, i received, t device, r motion_scale, r score, r max_score, r whole_score, t passed, "
+           "i borderline, r worked_s, r limit_s, t content, t result",
+           "id", "person = $1"},
+    Listed{"attempt_files", "t attempt, i place, t file", "attempt, place", HANDPIECE_OF_ATTEMPTS},
+    Listed{"judgements", "t attempt, r percent, t words, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
+    Listed{"comments", "t id, t attempt, t author, t words, r x_mm, r y_mm, r z_mm, r t_s, i made", "id",
+           "author = $1 OR " HANDPIECE_OF_ATTEMPTS},
+    Listed{"shares", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
+    Listed{"marks", "t id, t attempt, t marker, t kind, t verdict, r points, r max_points, t marks, i made", "id",
+           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+    Listed{"jobs", "i number, t campaign, t attempt, t rubric, i made, t state, t worker, i lease_until, i turn",
+           "number", nullptr},
+    Listed{"scores",
+           "i job, t attempt, t campaign, t rubric, i engine, t state, t reason, t state_hash, r score, r max_score, "
+           "r whole_score, t passed, i borderline, t worker, i made, t result",
+           "job", HANDPIECE_OF_ATTEMPTS},
+    Listed{"audit", "i number, i at, t who, t what, t about, t detail", "number",
+           "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)"},
+};
+#undef HANDPIECE_OF_ATTEMPTS
+
+BookTable read(Database& database, const Listed& listed, const std::string* person) {
+    BookTable table{listed.table, {}, {}};
+    std::string kinds, columns;
+    for (std::string_view rest = listed.columns; !rest.empty();) {
+        const std::string_view one = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(rest.size(), one.size() + 2));
+        kinds += one[0];
+        table.columns.emplace_back(one.substr(2));
+        columns += (columns.empty() ? "" : ", ") + table.columns.back();
+    }
+    Statement rows(database, fmt::format("SELECT {} FROM {} {} ORDER BY {}", columns, listed.table,
+                                         person ? fmt::format("WHERE {}", listed.ofPerson) : "", listed.order)
+                                 .c_str());
+    if (person) rows.with(*person);
+    while (rows.next()) {
+        std::vector<std::string> row;
+        for (std::size_t i = 0; i < kinds.size(); ++i) {
+            const int column = static_cast<int>(i);
+            const std::optional<double> number = kinds[i] == 'r' ? rows.optional(column) : std::nullopt;
+            row.push_back(kinds[i] == 't'   ? rows.text(column)
+                          : kinds[i] == 'i' ? std::to_string(rows.integer(column))
+                          : number          ? fmt::format("{}", *number)
+                                            : std::string());
+        }
+        table.rows.push_back(std::move(row));
+    }
+    return table;
+}
+
+void addEscaped(std::string& all, std::string_view text) {
+    for (const char c : text)
+        switch (c) {
+            case '\t':
+                all += "\\t";
+                break;
+            case '\n':
+                all += "\\n";
+                break;
+            case '\r':
+                all += "\\r";
+                break;
+            case '\\':
+                all += "\\\\";
+                break;
+            default:
+                all += c;
+        }
+}
+
+}  // namespace
+
+std::string asText(const std::vector<BookTable>& tables) {
+    std::string all;
+    const auto add = [&all](const std::vector<std::string>& row) {
+        for (std::size_t i = 0; i < row.size(); ++i) {
+            if (i > 0) all += '\t';
+            addEscaped(all, row[i]);
+        }
+        all += '\n';
+    };
+    for (const BookTable& table : tables) {
+        all += "# " + table.name + "\n";
+        add(table.columns);
+        for (const std::vector<std::string>& row : table.rows)
+            add(row);
+    }
+    return all;
+}
+
+std::vector<BookTable> Books::everything() const {
+    std::vector<BookTable> all;
+    Transaction transaction(*state_->database, Database::Access::read);
+    for (const Listed& listed : kListed)
+        all.push_back(read(*state_->database, listed, nullptr));
+    transaction.commit();
+    return all;
+}
+
+std::vector<BookTable> Books::about(const std::string& code, const Act& act) {
+    std::vector<BookTable> all;
+    requireText(code);
+    Transaction transaction(*state_->database);
+    state_->requirePerson(code);
+    state_->note(act, "export", code);
+    for (const Listed& listed : kListed)
+        if (listed.ofPerson) all.push_back(read(*state_->database, listed, &code));
+    transaction.commit();
+    return all;
+}
+
+}  // namespace handpiece::school

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+// A server, its stations and what goes wrong between them: over real HTTP, with real sessions.
+#include <atomic>
+#include <set>
+
+#include "school/server/school_fixture.h"
+#include "school/worker.h"
+#include "support/error_of.h"
+
+namespace handpiece::school_server {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+
+TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
+    School school(data());
+    Chair chair;
+    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    const std::string attempt = chair.finish(session(), "one.h5");
+    chair.store().add(school::Judgement{attempt, 80.0, "fine", 6000});
+    const school_station::Pushed pushed = chair.push(enrolment);
+    EXPECT_EQ(pushed.attempts, 1u);
+    EXPECT_EQ(pushed.judgements, 1u);
+    EXPECT_EQ(pushed.files, 1u);
+    EXPECT_EQ(pushed.bytes, fs::file_size(session()));
+    EXPECT_THAT(pushed.refused, SizeIs(0));
+    EXPECT_THAT(school_station::status(enrolment).missing, SizeIs(0));
+    // Nothing is left to be said; and said once more, from before, it is all the same.
+    EXPECT_EQ(chair.push(enrolment).attempts, 0u);
+    Enrolment forgot = enrolment;
+    forgot.sent = 0;
+    EXPECT_EQ(chair.push(forgot).bytes, 0u);
+    EXPECT_EQ(books().attemptsOf("s017").size(), 1u);
+
+    Worker worker({data()}, systemClock());
+    EXPECT_TRUE(worker.workOnce());
+    EXPECT_FALSE(worker.workOnce()) << "once";
+    const std::vector<school::Score> scores = scoresOf(attempt);
+    ASSERT_EQ(scores.size(), 1u);
+    EXPECT_EQ(scores.front().state, "proven") << scores.front().reason;
+    const assessment::Result own = assessment::scoreWork(assessment::readWork(session(), blockTask()), blockTask(),
+                                                         rubric::parseRubric(kRubric, "rubric.toml"));
+    EXPECT_EQ(scores.front().score, own.assessment.score) << "the station's own, to the bit";
+    EXPECT_EQ(scores.front().stateHash, own.identity.stateHash);
+    httplib::Client http(school.address());
+    const auto metrics = http.Get("/metrics");
+    ASSERT_TRUE(metrics);
+    EXPECT_THAT(metrics->body, HasSubstr("handpiece_attempts_total 1"));
+    EXPECT_THAT(metrics->body, HasSubstr("handpiece_jobs{state=\"done\"} 1"));
+}
+
+TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
+    School school(data());
+    Chair chair;
+    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    const std::string boast = chair.finish(session(), "one.h5", 99.0);
+    // The recording was changed after the score: the bytes are others than the attempt names.
+    const std::string changed = chair.finish(session(), "two.h5");
+    {
+        std::vector<std::byte> bytes = core::readFile(session());
+        bytes[bytes.size() / 3] ^= std::byte{1};
+        core::writeFile(chair.home() / "sessions" / "two.h5", bytes);
+    }
+    (void)chair.push(enrolment);
+    Worker worker({data()}, systemClock());
+    while (worker.workOnce()) {
+    }
+    EXPECT_THAT(scoresOf(boast).front().reason, HasSubstr("its station said 99 of 100"));
+    EXPECT_EQ(scoresOf(changed).front().state, "refused");
+    EXPECT_THAT(scoresOf(changed).front().reason, HasSubstr("another than the attempt names"));
+}
+
+TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
+    Chair chair;
+    Enrolment enrolment;
+    int port = 0;
+    {
+        School school(data());
+        port = school.port();
+        enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    }
+    const std::string attempt = chair.finish(session(), "one.h5");
+    EXPECT_THAT(test::errorOf([&] { (void)chair.push(enrolment); }), HasSubstr("nobody answers there"));
+    EXPECT_EQ(enrolment.sent, 0);
+    School again(data(), 0, port);
+    EXPECT_EQ(chair.push(enrolment).files, 1u);
+    EXPECT_EQ(chair.kept().sent, enrolment.sent);
+    EXPECT_TRUE(books().attempt(attempt));
+}
+
+TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
+    School school(data());
+    Chair chair;
+    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    (void)chair.finish(session(), "one.h5");
+    // Half of the file came before the network went.
+    const std::string hash = school::sha256Of(session());
+    const std::vector<std::byte> bytes = core::readFile(session());
+    const std::size_t half = bytes.size() / 2;
+    {
+        Books open(data());
+        const auto station = open.stationByKey(enrolment.key);
+        ASSERT_TRUE(station);
+        (void)open.append({station->id, hash, bytes.size()}, 0, std::span(bytes).first(half), 1);
+    }
+    EXPECT_EQ(chair.push(enrolment).bytes, bytes.size() - half);
+}
+
+TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
+    School school(data());
+    {
+        Books open(data());
+        for (int i = 0; i < 30; ++i)
+            open.offerCode(fmt::format("CODE-{:08}", i), fmt::format("chair {}", i), 4'000'000'000'000, {"server", 1});
+    }
+    (void)session();
+    std::vector<std::thread> chairs;
+    std::atomic<int> failed{0};
+    std::mutex mutex;
+    std::set<std::string> ids;
+    for (int i = 0; i < 30; ++i)
+        chairs.emplace_back([&, i] {
+            try {
+                Chair chair;
+                Enrolment enrolment = school_station::enrol(school.address(), fmt::format("CODE-{:08}", i), "s017");
+                for (int k = 0; k < 3; ++k) {
+                    const std::string id = chair.finish(session(), fmt::format("{}.h5", k));
+                    const std::lock_guard lock(mutex);
+                    ids.insert(id);
+                }
+                (void)chair.push(enrolment);
+            } catch (const std::exception& e) {
+                ++failed;
+                ADD_FAILURE() << e.what();
+            }
+        });
+    for (std::thread& chair : chairs)
+        chair.join();
+    EXPECT_EQ(failed, 0);
+    std::set<std::string> there;
+    for (const school::PushedAttempt& one : books().attemptsOf("s017"))
+        EXPECT_TRUE(there.insert(one.attempt.id).second);
+    EXPECT_EQ(there, ids);
+    EXPECT_THAT(books().files().all(), SizeIs(2)) << "the exercise and the one recording";
+    EXPECT_EQ(books().progress("arrival").waiting, 90);
+}
+
+TEST_F(SchoolTest, StrangersGetNothing) {
+    School school(data());
+    httplib::Client http(school.address());
+    for (const Route& route : Server::routes()) {
+        if (route.caller != Caller::station) continue;
+        std::string path = route.pattern;
+        if (const std::size_t at = path.find('('); at != std::string::npos)
+            path = path.substr(0, at) + std::string(64, 'a') + "?bytes=1&offset=0";
+        for (const httplib::Headers& headers :
+             {httplib::Headers{{"Handpiece-Protocol", "1"}},
+              httplib::Headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer "}},
+              httplib::Headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer ' OR 1=1 --"}},
+              httplib::Headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Basic " + std::string(64, 'a')}}}) {
+            const httplib::Result result = route.method == "GET"    ? http.Get(path, headers)
+                                           : route.method == "POST" ? http.Post(path, headers, "{}", "application/json")
+                                                                    : http.Put(path, headers, "x", "text/plain");
+            ASSERT_TRUE(result) << route.method << " " << path;
+            EXPECT_EQ(result->status, 401) << route.method << " " << path;
+        }
+        // Of another version: told, before anything else.
+        const auto other = http.Get(path, {{"Handpiece-Protocol", "2"}});
+        if (route.method == "GET") {
+            EXPECT_EQ(other->status, 426);
+        }
+    }
+    for (const char* path : {"/", "/api/v1/files/../../books.db", "/api/v1/files/%2e%2e%2fbooks.db", "/books.db",
+                             "/api/v1/files/AAAA", "/api/v2/status"}) {
+        const auto result = http.Get(path);
+        ASSERT_TRUE(result) << path;
+        EXPECT_EQ(result->status, 404) << path;
+    }
+    const auto wrong = http.Post("/api/v1/enrol", R"({"code": "nobody's"})", "application/json");
+    EXPECT_EQ(wrong->status, 403);
+    const Enrolment once = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    EXPECT_THAT(test::errorOf([&] { (void)school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017"); }),
+                HasSubstr("was used"));
+    // A key that was taken back.
+    {
+        Books open(data());
+        open.revoke(once.station, {"server", 2});
+    }
+    EXPECT_THAT(test::errorOf([&] { (void)school_station::status(once); }), HasSubstr("does not know this station"));
+}
+
+TEST_F(SchoolTest, DamagedMessagesAreOneClearErrorEach) {
+    School school(data());
+    const Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    httplib::Client http(school.address());
+    const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + enrolment.key}};
+    for (const std::string& body :
+         {std::string(), std::string("["), std::string("{}"), std::string("[]"), std::string(R"({"id": 7})"),
+          std::string(R"({"id": "x", "person": "s017"})"), std::string(100'000, '['), std::string("\xff\xfe\0", 3)}) {
+        const auto result = http.Post("/api/v1/attempts", headers, body, "application/json");
+        ASSERT_TRUE(result);
+        EXPECT_EQ(result->status, 400) << body.substr(0, 40);
+        EXPECT_THAT(result->body, HasSubstr("message-damaged"));
+    }
+    const auto huge =
+        http.Post("/api/v1/attempts", headers, std::string(school_wire::kMostMessage + 1, ' '), "application/json");
+    EXPECT_TRUE(!huge || huge->status == 413) << huge->status;
+    const std::string file = "/api/v1/files/" + std::string(64, 'a');
+    httplib::Client again(school.address());
+    for (const char* query : {"", "?bytes=", "?bytes=-1", "?bytes=1e9", "?bytes=99999999999999999999", "?bytes=x"})
+        EXPECT_EQ(again.Get(file + query, headers)->status, 400) << query;
+    EXPECT_EQ(again.Put(file + "?bytes=3&offset=2", headers, "x", "text/plain")->status, 409);
+    EXPECT_EQ(again.Put(file + "?bytes=1&offset=0", headers, "x", "text/plain")->status, 422)
+        << "not what was promised";
+    EXPECT_TRUE(again.Get("/healthz"));
+}
+
+/// As another program that answers at the address.
+TEST(Station, ANonsenseServerIsToldAndChangesNothing) {
+    httplib::Server nonsense;
+    std::string body = "<html>hello</html>";
+    int status = 200;
+    const auto reply = [&](const httplib::Request&, httplib::Response& response) {
+        response.status = status;
+        response.set_content(body, "text/html");
+    };
+    nonsense.Post(".*", reply).Get(".*", reply);
+    const int port = nonsense.bind_to_any_port("127.0.0.1");
+    std::thread thread([&] { nonsense.listen_after_bind(); });
+    const std::string address = fmt::format("http://127.0.0.1:{}", port);
+    for (const auto& [answer, code] : std::vector<std::pair<std::string, int>>{{"<html>", 200},
+                                                                               {"", 500},
+                                                                               {"{}", 200},
+                                                                               {R"({"station": 1})", 201},
+                                                                               {"{\"what\": 3}", 404},
+                                                                               {std::string(1 << 16, '{'), 200}}) {
+        body = answer, status = code;
+        EXPECT_NE(test::errorOf([&] { (void)school_station::enrol(address, "CODE-AAAA-BBBB", "s017"); }), "") << answer;
+    }
+    Chair chair;
+    (void)chair.finish(session(), "one.h5");
+    Enrolment enrolment{address, std::string(32, 'a'), std::string(64, 'b'), "s017", 0};
+    body = "<html>", status = 500;
+    EXPECT_NE(test::errorOf([&] { (void)chair.push(enrolment); }), "");
+    EXPECT_EQ(enrolment.sent, 0);
+    nonsense.stop();
+    thread.join();
+    EXPECT_NE(test::errorOf([] { (void)school_station::enrol("school.example", "C", "s"); }), "");
+    EXPECT_NE(test::errorOf([] { (void)school_station::enrol("http://127.0.0.1:1", "C", "s"); }), "");
+}
+
+}  // namespace
+}  // namespace handpiece::school_server

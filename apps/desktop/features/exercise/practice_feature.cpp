@@ -406,8 +406,15 @@ void PracticeFeature::makeIdeal() {
         if (done_ != of) return;
         teacherWork_ = beside->teacherWork;
         result_->setHasTeacherWork(teacherWork_ != nullptr);
-        result_->setIdeal(beside->ideal);
+        result_->setIdeal(beside->ideal, tr("This exercise asks for no preparation: there is no ideal."));
     });
+    connect(ideal_.get(), &Job::failed, this, [this, beside, of = done_](const Problem& problem) {
+        if (done_ != of) return;
+        teacherWork_ = beside->teacherWork;
+        result_->setHasTeacherWork(teacherWork_ != nullptr);
+        result_->setIdeal({}, tr("The ideal cannot be shown. %1").arg(problem.what));
+    });
+    result_->setIdeal({}, tr("The ideal is being cut: it can be chosen in some seconds."));
     ideal_->start();
 }
 

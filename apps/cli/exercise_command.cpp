@@ -299,7 +299,7 @@ void pack(const ExerciseOptions& o) {
     tasks::Task task = exerciseOf(o.path).task;
     if (!o.teacherWork.empty()) {
         studies::ProgressBar bar("cutting it again");
-        task.teacherWork = assessment::provenWork(o.teacherWork, task, bar.listener());
+        task.teacherWork = assessment::provenWork(o.teacherWork, task, bar.listener()).file;
         bar.finish();
     }
     write(task, o.out);

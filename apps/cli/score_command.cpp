@@ -2,6 +2,7 @@
 // handpiece score: work held against its exercise and judged by a rubric.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -14,6 +15,7 @@
 #include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/app/assessment/scan_work.h"
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/assessment/student_page.h"
 #include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -99,7 +101,10 @@ Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessm
     keep("undone.png", pictures.undone);
     for (const auto& [criterion, png] : pictures.places)
         keep("error-" + criterion + ".png", png);
-    const std::string page = report::studentReport(result, task, judged, pictures);
+    studies::ProgressBar bar("looking through it");
+    const std::string page =
+        assessment::studentPage(work, result, task, judged, pictures, !o.noPictures, bar.listener());
+    bar.finish();
     keep("report.html", std::as_bytes(std::span(page)));
     return files;
 }

@@ -11,6 +11,7 @@
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/school/people/secret.h"
 #include "school/commands.h"
 #include "school/server.h"
 #include "school/station.h"
@@ -24,8 +25,8 @@ using school::Act;
 using school::Books;
 
 struct BooksOptions {
-    std::string data = "school", database, name, code, file, role = "student", person;
-    std::size_t hours = 24;
+    std::string data = "school", database, name, code, file, role = "student", person, schoolClass, exercise;
+    std::size_t hours = 24, days = 120;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
@@ -37,21 +38,9 @@ Act now() {
     return {"server", school_server::systemClock()()};
 }
 
-/// 60 bits out of the system's randomness, in groups that can be read aloud.
-std::string spokenCode() {
-    constexpr std::string_view kLetters = "23456789ABCDEFGHJKLMNPQRSTUVWXYZ";
-    const std::string random = school::newId();
-    std::string code;
-    for (std::size_t i = 0; i < 12; ++i) {
-        if (i > 0 && i % 4 == 0) code += '-';
-        code += kLetters[std::stoul(random.substr(2 * i, 2), nullptr, 16) % kLetters.size()];
-    }
-    return code;
-}
-
 void offerCode(const BooksOptions& o) {
     Books books(o.data, o.database);
-    const std::string code = spokenCode();
+    const std::string code = school::newStationCode();
     const Act act = now();
     books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act);
     fmt::print("{}\n", code);
@@ -66,6 +55,45 @@ void addPerson(const BooksOptions& o) {
     person.made = act.at;
     books.add(std::span(&person, 1), act);
     fmt::print("{}: {}\n", person.code, o.role);
+}
+
+/// Read from standard input, so that no list of processes and no history has it.
+void setPassword(const BooksOptions& o) {
+    Books books(o.data, o.database);
+    const auto person = books.person(o.code);
+    if (!person) throw core::Error("there is no such person", o.code, "add them: handpiece school person");
+    std::string password;
+    if (isatty(STDIN_FILENO)) std::fprintf(stderr, "password: ");
+    for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar())
+        password += static_cast<char>(c);
+    school::requireGoodPassword(password, person->login);
+    books.setPassword(o.code, school::hashOfPassword(password), now());
+}
+
+void addClass(const BooksOptions& o) {
+    Books books(o.data, o.database);
+    const Act act = now();
+    school::SchoolClass made;
+    made.id = school::newId(), made.name = o.name, made.made = act.at;
+    books.add(made, act);
+    fmt::print("{}\n", made.id);
+}
+void join(const BooksOptions& o) {
+    Books books(o.data, o.database);
+    const school::Enrolment one{o.schoolClass, o.person, o.role};
+    books.enrol(std::span(&one, 1), now());
+}
+void assign(const BooksOptions& o) {
+    Books books(o.data, o.database);
+    const Act act = now();
+    const auto pack = books.pack(o.exercise);
+    if (!pack) throw core::Error("the school has no such exercise", o.exercise, "add it: handpiece school exercise");
+    school::Assignment made;
+    made.id = school::newId(), made.schoolClass = o.schoolClass, made.pack = pack->hash, made.rubric = pack->rubric;
+    made.title = o.name.empty() ? pack->title : o.name, made.kind = "practice", made.opens = act.at;
+    made.closes = act.at + static_cast<school::Milliseconds>(o.days) * 86'400'000;
+    books.add(made, act);
+    fmt::print("{}\n", made.id);
 }
 
 /// Its file goes among the server's, by what is in it.
@@ -187,6 +215,34 @@ void addBooksCommands(cli::Command& app) {
         .check(cli::oneOf({"student", "teacher", "examiner", "administrator"}))
         .showDefault();
     person.callback([options] { addPerson(*options); });
+
+    cli::Command password = app.subcommand("password", "Sets a person's password, read from standard input" + where);
+    addBooksOptions(password, o);
+    password.option("CODE", o.code, "of the person").required();
+    password.callback([options] { setPassword(*options); });
+
+    cli::Command made = app.subcommand("class", "Makes a class, and tells its id" + where);
+    addBooksOptions(made, o);
+    made.option("NAME", o.name, "as people know it").required();
+    made.callback([options] { addClass(*options); });
+
+    cli::Command joined = app.subcommand("join", "A person becomes one of a class" + where);
+    addBooksOptions(joined, o);
+    joined.option("CLASS", o.schoolClass, "its id").required();
+    joined.option("PERSON", o.person, "their code").required();
+    joined.option("--role", o.role, "in it").check(cli::oneOf({"student", "teacher", "examiner"})).showDefault();
+    joined.callback([options] { join(*options); });
+
+    cli::Command assigned =
+        app.subcommand("assign", "Gives a class an exercise to do, and tells the assignment's id" + where);
+    addBooksOptions(assigned, o);
+    assigned.option("CLASS", o.schoolClass, "its id").required();
+    assigned.option("EXERCISE", o.exercise, "hash of the exercise, as handpiece school exercise told it").required();
+    assigned.option("--title", o.name, "as the class reads it");
+    assigned.option("--days", o.days, "that it is open")
+        .check(cli::range(std::size_t{1}, std::size_t{3650}))
+        .showDefault();
+    assigned.callback([options] { assign(*options); });
 
     cli::Command exercise = app.subcommand("exercise", "Adds an exercise, with its rubric" + where);
     addBooksOptions(exercise, o);

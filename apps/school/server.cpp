@@ -12,10 +12,16 @@
 #include <span>
 #include <thread>
 
+#include "handpiece/app/report/school_pages.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/school/people/secret.h"
+#include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
+#include "school/pages.h"
+#include "school/task_shelf.h"
 #include "school/wire.h"
 #include "school/worker.h"
 
@@ -27,7 +33,8 @@ using httplib::Response;
 using school::Books;
 using school::Milliseconds;
 
-constexpr const char* kJson = "application/json";
+constexpr const char *kJson = "application/json", *kCookie = "handpiece";
+constexpr Milliseconds kLoginMs = 12 * 3'600'000;  // a working day
 /// Reading and writing of one message, and between two on one connection.
 constexpr auto kPatience = std::chrono::seconds(20);
 constexpr time_t kKeepAliveS = 5;
@@ -42,8 +49,11 @@ int statusOf(const core::Error& error) {
     return found != statuses.end() ? found->second : 500;
 }
 
+constexpr const char* kPolicy = "Content-Security-Policy";
+
 void answer(Response& response, const std::string& json, int status = 200) {
     response.status = status;
+    response.set_header(kPolicy, "default-src 'none'; frame-ancestors 'none'");
     response.set_content(json, kJson);
 }
 void answer(Response& response, const core::Error& error) {
@@ -56,6 +66,35 @@ void answer(Response& response, const core::Error& error) {
         school_wire::toJson(core::Error("something went wrong there", "", "tell who looks after it; it is in its log")
                                 .as("server-failed")),
         status);
+}
+
+/// A page, or the way to another. `secure`: over TLS, and the cookie never goes over anything else.
+void answer(Response& response, const Page& page, bool secure) {
+    response.set_header(kPolicy,
+                        "default-src 'none'; style-src 'unsafe-inline'; img-src data:; form-action 'self'; base-uri "
+                        "'none'; frame-ancestors 'none'");
+    if (page.login)
+        response.set_header("Set-Cookie",
+                            fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}; Max-Age={}", kCookie, *page.login,
+                                        secure ? "; Secure" : "", page.login->empty() ? 0 : kLoginMs / 1000));
+    response.status = page.status;
+    if (page.to.empty()) return response.set_content(page.html, "text/html; charset=utf-8");
+    response.status = 303;
+    response.set_header("Location", page.to);
+    response.set_content("", "text/plain");
+}
+
+std::string tokenOf(const Request& request) {
+    const std::string cookies = request.get_header_value("Cookie"), name = std::string(kCookie) + "=";
+    for (std::size_t at = 0; at < cookies.size();) {
+        const std::size_t end = std::min(cookies.find(';', at), cookies.size());
+        std::string_view one = std::string_view(cookies).substr(at, end - at);
+        while (one.starts_with(' '))
+            one.remove_prefix(1);
+        if (one.starts_with(name) && one.size() == name.size() + 64) return std::string(one.substr(name.size()));
+        at = end + 1;
+    }
+    return {};
 }
 
 std::uint64_t numberOf(const Request& request, const char* name) {
@@ -114,10 +153,8 @@ struct Server::State {
         http->set_write_timeout(kPatience);
         http->set_keep_alive_timeout(kKeepAliveS);
         http->set_tcp_nodelay(true);
-        http->set_default_headers({{"X-Content-Type-Options", "nosniff"},
-                                   {"Cache-Control", "no-store"},
-                                   {"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"},
-                                   {"Referrer-Policy", "no-referrer"}});
+        http->set_default_headers(
+            {{"X-Content-Type-Options", "nosniff"}, {"Cache-Control", "no-store"}, {"Referrer-Policy", "no-referrer"}});
         http->set_exception_handler([this](const Request&, Response& response, std::exception_ptr thrown) {
             ++failed;
             try {
@@ -141,9 +178,11 @@ struct Server::State {
     }
 
     using Handler = std::function<void(const Request&, Response&, const school::Station*)>;
+    using Shown = std::function<Page(const Request&, const Visit&)>;
     struct Entry {
         Route route;
-        Handler handler;
+        Handler handler;  ///< of anyone's and stations' routes
+        Shown shown{};    ///< of persons'
     };
 
     /// Handlers of `of`, which may be null where nobody calls them.
@@ -153,6 +192,7 @@ struct Server::State {
         const auto handler = [this, entry](const Request& request, Response& response) {
             ++asked;
             if (entry.route.caller == Caller::anyone) return entry.handler(request, response, nullptr);
+            if (entry.route.caller == Caller::person) return show(entry, request, response);
             const school::Station station = stationOf(request);
             entry.handler(request, response, &station);
         };
@@ -160,6 +200,53 @@ struct Server::State {
         if (method == "GET") http->Get(entry.route.pattern, handler);
         if (method == "POST") http->Post(entry.route.pattern, handler);
         if (method == "PUT") http->Put(entry.route.pattern, handler);
+    }
+
+    [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
+
+    void show(const Entry& entry, const Request& request, Response& response) {
+        const BooksPool::Lent open = books.take();
+        const std::string token = tokenOf(request);
+        const Milliseconds now = clock();
+        const auto person = token.empty() ? std::nullopt : open->personByToken(token, now);
+        if (!person) return answer(response, Page{303, {}, "/login", std::string()}, isSecure());
+        const Visit visit{*open, *person, token, now};
+        // What changes something came from a page of this very log-in.
+        if (entry.route.method == "POST" &&
+            !school::isSameSecret(request.get_param_value("token"), school::requestTokenOf(token)))
+            return answer(response, refused(config::words()("school.gone"), 403), isSecure());
+        answer(response, entry.shown(request, visit), isSecure());
+    }
+
+    Page logIn(const Request& request) {
+        const std::string login = request.get_param_value("login"), password = request.get_param_value("password");
+        const Milliseconds now = clock();
+        const std::string from = "from " + request.remote_addr, of = "login " + login;
+        {
+            const std::lock_guard lock(guessing);
+            if (const std::int64_t wait = std::max(throttle.waitMs(from, now), throttle.waitMs(of, now)); wait > 0)
+                return {429, report::loginPage(login, config::words()("school.wait", (wait + 999) / 1000)), {}, {}};
+            // Counted before it is looked at: a hundred guesses at once are a hundred.
+            throttle.failed(from, now), throttle.failed(of, now);
+        }
+        auto open = books.take();
+        constexpr std::size_t kMostPassword = 256;
+        const auto person = login.size() <= 200 ? open->personByLogin(login) : std::nullopt;
+        bool isRight = false;
+        if (password.size() <= kMostPassword) {
+            if (person && !person->password.empty())
+                isRight = school::isPassword(person->password, password);
+            else
+                school::spendPasswordTime(password);
+        }
+        if (!isRight) return {401, report::loginPage(login, config::words()("school.wrong-login")), {}, {}};
+        {
+            const std::lock_guard lock(guessing);
+            throttle.succeeded(from), throttle.succeeded(of);
+        }
+        const std::string token = school::newSecret();
+        open->addLogin(token, person->code, now + kLoginMs, {person->code, now});
+        return {303, {}, "/classes", token};
     }
 
     school::Station stationOf(const Request& request) {
@@ -184,6 +271,9 @@ struct Server::State {
     std::unique_ptr<httplib::Server> http;
     int port = -1;
     std::vector<std::unique_ptr<Worker>> workers;
+    TaskShelf tasks;
+    std::mutex guessing;
+    school::Throttle throttle;
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};
 };
 
@@ -191,6 +281,9 @@ std::vector<Server::State::Entry> Server::State::table(State* of) {
     using school_wire::toJson;
     const auto on = [](const char* method, const char* pattern, Caller caller, Handler handler) {
         return Entry{{method, pattern, caller}, std::move(handler)};
+    };
+    const auto page = [](const char* method, const char* pattern, Shown shown) {
+        return Entry{{method, pattern, Caller::person}, {}, std::move(shown)};
     };
     const auto upload = [](const Request& request, const school::Station& station) {
         return school::Upload{station.id, request.matches[1].str(), numberOf(request, "bytes")};
@@ -220,8 +313,9 @@ std::vector<Server::State::Entry> Server::State::table(State* of) {
            [of](const Request& request, Response& response, const school::Station*) {
                const school_wire::Enrol enrol = school_wire::enrolFrom(request.body);
                // A key of 256 bits out of the system's randomness.
-               const school_wire::Enrolled made{school::newId(), school::newId() + school::newId()};
-               if (!of->books.take()->enrolStation(enrol.code, made.station, made.key, of->clock()))
+               const school_wire::Enrolled made{school::newId(), school::newSecret()};
+               if (!of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station, made.key,
+                                                   of->clock()))
                    throw core::Error("this code is not known, was used, or is too old", "",
                                      "have a new one made: handpiece school code")
                        .as("code-unknown");
@@ -233,6 +327,22 @@ std::vector<Server::State::Entry> Server::State::table(State* of) {
                                           of->books.take()->missingFiles(station->id)};
                if (status.missing.size() > 200) status.missing.resize(200);
                answer(response, toJson(status));
+           }),
+        on("GET", "/api/v1/tasks/([0-9A-Za-z._-]{1,64})", Caller::station,
+           [of](const Request& request, Response& response, const school::Station*) {
+               const std::string person = request.matches[1];
+               auto open = of->books.take();
+               std::vector<school_wire::Task> tasks;
+               for (const school::SchoolClass& one : open->classes()) {
+                   const std::vector<school::Enrolment> in = open->enrolments(one.id);
+                   if (std::none_of(in.begin(), in.end(), [&](const school::Enrolment& e) {
+                           return e.person == person && e.role == "student";
+                       }))
+                       continue;
+                   for (const school::Assignment& a : open->assignments(one.id))
+                       tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
+               }
+               answer(response, toJson(tasks));
            }),
         on("POST", "/api/v1/attempts", Caller::station,
            [of](const Request& request, Response& response, const school::Station* station) {
@@ -269,6 +379,36 @@ std::vector<Server::State::Entry> Server::State::table(State* of) {
                of->bytes += request.body.size();
                answer(response, toJson(school_wire::Received{offset + request.body.size(), isWhole}));
            }),
+        on("GET", "/login", Caller::anyone,
+           [of](const Request&, Response& response, const school::Station*) {
+               answer(response, Page{200, report::loginPage({}, {}), {}, {}}, of->isSecure());
+           }),
+        on("POST", "/login", Caller::anyone,
+           [of](const Request& request, Response& response, const school::Station*) {
+               answer(response, of->logIn(request), of->isSecure());
+           }),
+        page("POST", "/logout",
+             [](const Request&, const Visit& visit) {
+                 visit.books.endLogin(visit.token);
+                 return Page{303, {}, "/login", std::string()};
+             }),
+        page("GET", "/",
+             [](const Request&, const Visit&) {
+                 return Page{303, {}, "/classes", {}};
+             }),
+        page("GET", "/classes", [](const Request&, const Visit& visit) { return classesOf(visit); }),
+        page("GET", "/classes/([0-9A-Za-z._-]{1,64})",
+             [](const Request& request, const Visit& visit) { return classOf(visit, request.matches[1]); }),
+        page("GET", "/people/([0-9A-Za-z._-]{1,64})",
+             [](const Request& request, const Visit& visit) { return personOf(visit, request.matches[1]); }),
+        page("GET", "/attempts/([0-9a-f]{32})",
+             [](const Request& request, const Visit& visit) { return attemptOf(visit, request.matches[1]); }),
+        page("GET", "/attempts/([0-9a-f]{32})/result",
+             [of](const Request& request, const Visit& visit) {
+                 return resultOf(visit, request.matches[1], [of](const school::Books& books, const std::string& hash) {
+                     return of->tasks.of(books, hash);
+                 });
+             }),
     };
 }
 

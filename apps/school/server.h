@@ -28,7 +28,8 @@ using Clock = std::function<school::Milliseconds()>;
 [[nodiscard]] Clock systemClock();
 
 /// Who may call a route.
-enum class Caller { anyone, station };
+/// A person is one who is logged in, by a cookie; what they may see is looked at page by page (pages.h).
+enum class Caller { anyone, station, person };
 struct Route {
     std::string method, pattern;  ///< a regular expression that has to match the whole path
     Caller caller;

@@ -123,10 +123,19 @@ class Pusher {
             }
         }
     }
+    /// The one that the school gave to do with this very exercise at that time; empty: practice of one's own.
+    std::string assignmentOf(const school::Attempt& attempt) {
+        if (!tasks_) tasks_ = school_wire::tasksFrom(line_.get("/api/v1/tasks/" + enrolment_.person));
+        for (const school_wire::Task& t : *tasks_)
+            if (t.exerciseHash == attempt.exerciseHash && attempt.finished >= t.opens && attempt.began <= t.closes)
+                return t.assignment;
+        return {};
+    }
     void sendAttempt(const school::Attempt& attempt) {
         school::PushedAttempt p;
         p.attempt = attempt;
         p.person = enrolment_.person;
+        p.assignment = assignmentOf(attempt);
         std::vector<fs::path> files;
         for (const std::string& name : attempt.recordings)
             files.push_back(sessions_ / fs::path(name).filename());
@@ -159,6 +168,7 @@ class Pusher {
     Enrolment& enrolment_;
     const fs::path& file_;
     Line line_;
+    std::optional<std::vector<school_wire::Task>> tasks_;
     Pushed pushed_;
 };
 

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostText = 4000, kMostResult = 3 << 20, kMostList = 200;
+constexpr std::size_t kMostText = 4000, kMostResult = 3 << 20, kMostList = 200, kMostTasks = 2000;
 constexpr double kMostNumber = 1e12;
 
 /// A message from somebody: every field is looked at before it is used.
@@ -61,9 +61,19 @@ class Message {
         }
         return all;
     }
-    [[nodiscard]] const Json& json() const { return json_; }
+    [[nodiscard]] std::vector<Message> messages(const char* key) const {
+        const Json& found = at(key);
+        if (!found.is_array() || found.size() > kMostTasks) fail(key, "is no list, or too long");
+        std::vector<Message> all;
+        for (const Json& one : found) {
+            if (!one.is_object()) fail(key, "is no list of objects");
+            all.push_back(Message(one));
+        }
+        return all;
+    }
 
   private:
+    explicit Message(Json json) : json_(std::move(json)) {}
     [[noreturn]] static void fail(const char* key, const char* why) {
         throw core::Error(fmt::format("\"{}\" {}", key, why), "message", "use programs that belong together")
             .as("message-damaged", {key, why});
@@ -163,6 +173,24 @@ Status statusFrom(std::string_view json) {
     const Message m(json);
     return {m.text("server"), m.whole<int>("protocol"), m.whole<std::int32_t>("engine"), m.text("station"),
             m.texts("missing")};
+}
+
+std::string toJson(const std::vector<Task>& tasks) {
+    Json list = Json::array();
+    for (const Task& t : tasks)
+        list.push_back({{"assignment", t.assignment},
+                        {"exercise_hash", t.exerciseHash},
+                        {"title", t.title},
+                        {"opens_ms", t.opens},
+                        {"closes_ms", t.closes}});
+    return dumped({{"tasks", std::move(list)}});
+}
+std::vector<Task> tasksFrom(std::string_view json) {
+    std::vector<Task> tasks;
+    for (const Message& m : Message(json).messages("tasks"))
+        tasks.push_back({m.text("assignment"), m.text("exercise_hash"), m.text("title"),
+                         m.whole<school::Milliseconds>("opens_ms"), m.whole<school::Milliseconds>("closes_ms")});
+    return tasks;
 }
 
 std::string toJson(const core::Error& e) {

@@ -53,6 +53,14 @@ struct Status {
 [[nodiscard]] std::string toJson(const Status& status);
 [[nodiscard]] Status statusFrom(std::string_view json);
 
+/// What a person has to do.
+struct Task {
+    std::string assignment, exerciseHash, title;
+    school::Milliseconds opens = 0, closes = 0;
+};
+[[nodiscard]] std::string toJson(const std::vector<Task>& tasks);
+[[nodiscard]] std::vector<Task> tasksFrom(std::string_view json);
+
 /// An error as the other side tells it, and back: what, where, what to do, and its name.
 [[nodiscard]] std::string toJson(const core::Error& error);
 [[nodiscard]] core::Error errorFrom(std::string_view json, int status);

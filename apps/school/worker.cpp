@@ -9,12 +9,9 @@
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/file.h"
 
 namespace handpiece::school_server {
 namespace {
-
-constexpr std::size_t kMostTasks = 8;
 
 school::Score refused(const school::Job& job, std::string why) {
     school::Score score;
@@ -83,7 +80,7 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
     std::string exercise = attempt->attempt.exerciseHash;
     if (!attempt->assignment.empty())
         if (const auto assigned = books.assignment(attempt->assignment)) exercise = assigned->pack;
-    const std::shared_ptr<const tasks::Task> task = taskOf(books, exercise);
+    const std::shared_ptr<const tasks::Task> task = tasks_.of(books, exercise);
     if (!task) return refused(job, fmt::format("the school has no exercise {}", exercise));
     const std::optional<school::RubricVersion> text = books.rubric(job.rubric);
     if (!text) return refused(job, fmt::format("the school has no rubric {}", job.rubric));
@@ -101,19 +98,6 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
         return true;
     };
     return proving::prove(*attempt, sessions, *task, rubric, progress);
-}
-
-std::shared_ptr<const tasks::Task> Worker::taskOf(const school::Books& books, const std::string& hash) {
-    if (const auto found = tasks_.find(hash); found != tasks_.end()) return found->second;
-    const std::optional<school::Pack> pack = books.pack(hash);
-    if (!pack) return nullptr;
-    // Read by its name's end; the books have it without one.
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "exercise.handpiece";
-    std::filesystem::create_symlink(std::filesystem::absolute(books.files().path(pack->file)), file);
-    auto task = std::make_shared<const tasks::Task>(tasks::readTask(file));
-    if (tasks_.size() >= kMostTasks) tasks_.clear();
-    return tasks_[hash] = std::move(task);
 }
 
 }  // namespace handpiece::school_server

@@ -7,14 +7,12 @@
 #include <condition_variable>
 #include <filesystem>
 #include <functional>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 
-#include "handpiece/assess/task/task.h"
 #include "handpiece/school/store/books.h"
+#include "school/task_shelf.h"
 
 namespace handpiece::school_server {
 
@@ -42,12 +40,11 @@ class Worker {
     void loop();
     /// `isLost`: its lease ran out, and it is another's by now. Throws core::Error "cancelled" then, or when it ends.
     [[nodiscard]] school::Score heard(school::Books& books, school::Job& job, bool& isLost);
-    [[nodiscard]] std::shared_ptr<const tasks::Task> taskOf(const school::Books& books, const std::string& hash);
 
     const WorkerSettings settings_;
     const std::function<school::Milliseconds()> clock_;
     const std::string name_;
-    std::map<std::string, std::shared_ptr<const tasks::Task>> tasks_;  ///< those of now, by their hashes
+    TaskShelf tasks_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::atomic<bool> ends_{false};

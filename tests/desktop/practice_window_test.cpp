@@ -73,9 +73,14 @@ TEST_F(PracticeTest, FromTheChoiceToTheResultAndAgain) {
     EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - cutMm3) < 1e-3; })) << removedMm3();
     auto* table = part<QTableWidget>("resultTable");
     EXPECT_EQ(table->rowCount(), static_cast<int>(truth.rubric.criteria.size()));
-    // Own and ideal, by a click each.
-    ASSERT_TRUE(waitFor([this] { return part<QRadioButton>("resultIdeal")->isEnabled(); }));
+    // Own and ideal, by a click each. While it is not there the window says why.
     auto* tooth = part<SolidView>("resultTooth");
+    if (auto* ideal = part<QRadioButton>("resultIdeal"); !ideal->isEnabled()) {
+        EXPECT_TRUE(ideal->toolTip().contains("being cut")) << ideal->toolTip().toStdString();
+        EXPECT_TRUE(tooth->caption().contains("being cut")) << tooth->caption().toStdString();
+    }
+    ASSERT_TRUE(waitFor([this] { return part<QRadioButton>("resultIdeal")->isEnabled(); }));
+    EXPECT_FALSE(tooth->caption().contains("being cut")) << tooth->caption().toStdString();
     ASSERT_TRUE(waitFor([&] { return tooth->isDrawn(); }));
     const QImage own = tooth->picture();
     QTest::mouseClick(part<QRadioButton>("resultIdeal"), Qt::LeftButton);
@@ -94,6 +99,38 @@ TEST_F(PracticeTest, FromTheChoiceToTheResultAndAgain) {
     EXPECT_EQ(part<QListWidget>("exercisesList")->currentItem()->text(), "Line two");
     chooseInList(QStringLiteral("Line one"));
     EXPECT_TRUE(part<QLabel>("exercisesBest")->text().contains("1")) << "best so far";
+}
+
+TEST_F(PracticeTest, TheDriveOfAnExerciseHoldsForItAlone) {
+    makeExercise("slow", false, {}, [](tasks::Task& task) {
+        task.drive = "low-speed";
+        task.speedRpm = 20000.0;
+    });
+    makeExercise("free", false, {}, [](tasks::Task& task) { task.drive.clear(); });
+    startWithTooth();
+    simulator().setDrive(QStringLiteral("weak-turbine"));
+    const double own = instrument::driveByName("weak-turbine").freeSpeedRpm;
+    simulator().setSpeed(0.5 * own);
+    openExercises();
+    begin("slow");
+    EXPECT_EQ(simulator().driveName(), "low-speed");
+    EXPECT_EQ(simulator().setSpeedRpm(), 20000.0);
+    simulator().setSpeed(10000.0);  // within it: for this work
+    const auto kept = [this](const char* key) { return host_->settings().value(QLatin1String(key)).toString(); };
+    EXPECT_EQ(kept("work/drive"), "weak-turbine");
+    EXPECT_DOUBLE_EQ(kept("work/speedRpm").toDouble(), 0.5 * own);
+    openExercises();
+    begin("free");
+    EXPECT_EQ(simulator().driveName(), "weak-turbine");
+    EXPECT_DOUBLE_EQ(simulator().setSpeedRpm(), 0.5 * own);
+    // What is chosen where nothing is named is a choice.
+    simulator().setDrive(QStringLiteral("turbine"));
+    openExercises();
+    begin("slow");
+    EXPECT_EQ(simulator().driveName(), "low-speed");
+    openTooth(11);
+    ASSERT_TRUE(waitFor([&] { return simulator().toothCase()->kind == "upper-central-incisor"; }));
+    EXPECT_EQ(simulator().driveName(), "turbine");
 }
 
 TEST_F(PracticeTest, AClickOnEvidenceTurnsTheEyeAndPlaysTheSeconds) {

@@ -73,10 +73,20 @@ TEST_F(PracticeTest, TheTeachersOwnWorkPlaysBesideAlsoAfterTheWorkWasResumed) {
     fs::copy_file(eggs, at("eggs.h5"));
     refused(place / "exercise.toml", "work-no-session");
     refused(at("eggs.h5"), "other-tooth");
+    // One of another exercise on this tooth: its points tell.
+    const course::FinishedWork judged =
+        course::judged(session, std::make_shared<const tasks::Task>(tasks::readTask(place)));
+    const QString points = QLocale().toString(judged.result.assessment.score, 'f', 1);
     take(session);
-    ASSERT_EQ(window().errorDialog(), nullptr);
     ASSERT_NE(editor.dialog()->draft().now().teacherWork, nullptr);
-    EXPECT_EQ(part<QLabel>("editorTeacherWork")->text(), "comes along");
+    EXPECT_TRUE(part<QLabel>("editorTeacherWork")->text().contains(points))
+        << part<QLabel>("editorTeacherWork")->text().toStdString();
+    ASSERT_EQ(judged.result.assessment.passed, score::Passed::no) << "a line cut by one press";
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
+    EXPECT_EQ(window().errorDialog()->problem().id, "teacher-work-fails");
+    EXPECT_TRUE(window().errorDialog()->problem().what.contains(points));
+    window().errorDialog()->reject();
+    ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
     picture(part<QDialog>("exerciseEditor"), "editor-teacher");
     click("editorTeacherWorkDrop");
     EXPECT_EQ(editor.dialog()->draft().now().teacherWork, nullptr);

@@ -1,43 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any text as exercise.toml, beside a block with a fissure, contacts, a horn, an orifice and a junction, must give a
-// task that is written, read and written again as the same bytes and has the same hash, and lies on the block or tells
-// why not; or one core::Error.
+// task that is written, read and written again as the same bytes and has the same hash, also as a teacher's draft, and
+// lies on the block with the draft's handles or tells why not; or one core::Error.
 #include <unistd.h>
 
 #include <cmath>
 
-#include "fuzz_model.h"
+#include "fuzz_block.h"
+#include "handpiece/assess/draft/draft.h"
+#include "handpiece/assess/draft/handles.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/file.h"
 
 namespace fs = std::filesystem;
 using namespace handpiece;
-
-namespace {
-
-/// 10 x 9 x 14 mm, of enamel.
-cases::Case block() {
-    cases::Case made;
-    made.name = made.kind = "block";
-    made.buccalSign = -1;
-    geometry::TriangleMesh& mesh = made.outer;
-    for (int i = 0; i < 8; ++i)
-        mesh.vertices.push_back({i & 1 ? 5.0 : -5.0, i & 2 ? 4.5 : -4.5, i & 4 ? 7.0 : -7.0});
-    mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
-                      {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
-    made.parts.push_back({"enamel", cases::Tissue::enamel, 10, mesh});
-    using Kind = cases::LandmarkKind;
-    made.landmarks = {{Kind::fissure, "central", {{-2.5, 0, 7}, {0, 0.3, 7}, {2.5, 0, 7}}},
-                      {Kind::contact, "mesial", {{5, 0, 4}}},
-                      {Kind::contact, "distal", {{-5, 0, 4}}},
-                      {Kind::pulpHorn, "mesiobuccal", {{1.5, -1.5, 3}}},
-                      {Kind::orifice, "mesial", {{1.5, 0, -2}}},
-                      {Kind::orifice, "distal", {{-1.5, 0, -2}}},
-                      {Kind::cementoEnamelJunction, "", {{5, 4.5, 0}, {-5, 4.5, 0}, {-5, -4.5, 0}, {5, -4.5, 0}}}};
-    return made;
-}
-
-}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     // What is written to a disk that is memory takes no time.
@@ -45,7 +21,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const fs::path made = fs::path("/dev/shm") / ("fuzz_exercise." + std::to_string(getpid()));
         tasks::Task task;
         task.id = "fuzz";
-        task.toothCase = block();
+        task.toothCase = fuzz::block();
         tasks::writeTask(task, made / "in");
         return made;
     }();
@@ -58,6 +34,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const auto textIn = [](const char* name) { return core::readFile(folder / name / tasks::kTaskFile); };
         if (textIn("once") != textIn("twice")) __builtin_trap();
         if (tasks::contentHash(read) != tasks::contentHash(again)) __builtin_trap();
+        // The same as a teacher's draft.
+        const draft::Content content = draft::contentOf(read);
+        if (tasks::contentHash(draft::taskOf(content)) != tasks::contentHash(read)) __builtin_trap();
+        (void)draft::problems(content);
         if (!read.preparation) return;
         const preparation::Laid laid = preparation::layOn(read.toothCase, *read.preparation);
         if (!laid.draw.allFinite() || !laid.zones->box().min.allFinite() || !laid.zones->box().max.allFinite())
@@ -67,5 +47,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             if (!std::isfinite(laid.zones->targetMm(p))) __builtin_trap();
             (void)laid.zones->at(p);
         }
+        for (const draft::Handle& h : draft::handlesOf(read.toothCase, *read.preparation, laid))
+            if (!h.placeMm.allFinite() || !h.way.allFinite() ||
+                !std::isfinite(draft::valueOf(h, *read.preparation, 0.3)))
+                __builtin_trap();
     });
 }

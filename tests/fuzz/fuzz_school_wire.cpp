@@ -34,6 +34,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     twice(text, [](std::string_view t) { return wire::enrolFrom(t); });
     twice(text, [](std::string_view t) { return wire::receivedFrom(t); });
     twice(text, [](std::string_view t) { return wire::statusFrom(t); });
+    twice(text, [](std::string_view t) { return wire::tasksFrom(t); });
     (void)wire::errorFrom(text, 500);
     return 0;
 }

@@ -217,6 +217,7 @@ void SolidView::makeTissueButtons() {
 
 void SolidView::setCaption(const QString& caption, bool isStale) {
     caption_ = caption;
+    setAccessibleDescription(caption);
     isStale_ = isStale;
     update();
 }
@@ -450,13 +451,14 @@ void SolidView::paintEvent(QPaintEvent* event) {
     painter.setFont(scaledFont(font(), 0.9));
     const QColor pale(0xe8, 0xec, 0xf1);
     if (!caption_.isEmpty()) {
-        const QFontMetrics metrics = painter.fontMetrics();
-        const QRectF box(8, 7, metrics.horizontalAdvance(caption_) + 14.0, metrics.height() + 6.0);
+        constexpr int kFlags = Qt::AlignLeft | Qt::AlignTop | Qt::TextWordWrap;
+        const QRectF text = painter.boundingRect(QRectF(15, 10, width() - 30.0, height() - 20.0), kFlags, caption_);
+        const QRectF box = text.adjusted(-7, -3, 7, 3);
         painter.setPen(Qt::NoPen);
         painter.setBrush(QColor(0, 0, 0, 120));
         painter.drawRoundedRect(box, 4, 4);
         painter.setPen(isStale_ ? QColor(0xf5, 0xb8, 0x3d) : pale);
-        painter.drawText(box, Qt::AlignCenter, caption_);
+        painter.drawText(text, kFlags, caption_);
     }
     if (!hasPicture) {
         painter.setPen(pale);

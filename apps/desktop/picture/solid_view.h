@@ -36,6 +36,7 @@ class SolidView : public QWidget {
     void setParts(std::shared_ptr<const std::vector<cases::Part>> parts, const core::Box& bounds);
     /// A line about what is shown, above the picture ("Preview"); dimmed when it is no longer true.
     void setCaption(const QString& caption, bool isStale);
+    [[nodiscard]] const QString& caption() const noexcept { return caption_; }
     /// In the picture's place while there is nothing to be seen.
     void setPlaceholder(const QString& words);
     /// Occlusal, mesial and the sides as arrows; `buccalSign` 0: the sides without names.

@@ -2916,6 +2916,14 @@
         <source>Choose a saved attempt, or a session (.h5).</source>
         <translation>保存した作業か記録 (.h5) を選んでください。</translation>
     </message>
+    <message>
+        <source>By this exercise&apos;s rubric your work gets %1 of %2 points and does not pass.</source>
+        <translation>この課題のルーブリックでは、この作業は %2 点中 %1 点で、不合格です。</translation>
+    </message>
+    <message>
+        <source>It comes along all the same. If it is of another exercise on this tooth, remove it.</source>
+        <translation>それでも付属します。同じ歯の別の課題の記録であれば、取り除いてください。</translation>
+    </message>
 </context>
 <context>
     <name>Pulp</name>
@@ -9025,6 +9033,18 @@ lingual: %4</source>
         <source>Back to the result</source>
         <translation>結果に戻る</translation>
     </message>
+    <message>
+        <source>The ideal is being cut: it can be chosen in some seconds.</source>
+        <translation>理想形を削っています。数秒後に選べます。</translation>
+    </message>
+    <message>
+        <source>This exercise asks for no preparation: there is no ideal.</source>
+        <translation>この課題は形成を求めていないので、理想形はありません。</translation>
+    </message>
+    <message>
+        <source>The ideal cannot be shown. %1</source>
+        <translation>理想形を表示できません。%1</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::ProgressCurve</name>
@@ -9806,6 +9826,10 @@ lingual: %4</source>
         <source>Reading the work...</source>
         <translation>形成を読み込み中...</translation>
     </message>
+    <message>
+        <source>%1 of %2 points</source>
+        <translation>%1／%2点</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::PreparationPage</name>
@@ -9910,6 +9934,25 @@ lingual: %4</source>
         <translation>数値に戻る</translation>
     </message>
     <message>
+        <source>Green is to go, orange must stay: paint on with the left button</source>
+        <translation>緑は削る部分、橙は残す部分：左ボタンで続けて塗る</translation>
+    </message>
+    <message>
+        <source>Green is to go, orange must stay</source>
+        <translation>緑は削る部分、橙は残す部分</translation>
+    </message>
+    <message>
+        <source>Paint on the tooth with the left button</source>
+        <translation>左ボタンで歯の上を塗る</translation>
+    </message>
+    <message>
+        <source>Take the work whose cut is the target</source>
+        <translation>切削が目標となる形成を取り込む</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::OwnTarget</name>
+    <message>
         <source>Take work...</source>
         <translation>形成を取り込む...</translation>
     </message>
@@ -9956,22 +9999,6 @@ lingual: %4</source>
     <message>
         <source>Radius of the brush</source>
         <translation>ブラシの半径</translation>
-    </message>
-    <message>
-        <source>Green is to go, orange must stay: paint on with the left button</source>
-        <translation>緑は削る部分、橙は残す部分：左ボタンで続けて塗る</translation>
-    </message>
-    <message>
-        <source>Green is to go, orange must stay</source>
-        <translation>緑は削る部分、橙は残す部分</translation>
-    </message>
-    <message>
-        <source>Paint on the tooth with the left button</source>
-        <translation>左ボタンで歯の上を塗る</translation>
-    </message>
-    <message>
-        <source>Take the work whose cut is the target</source>
-        <translation>切削が目標となる形成を取り込む</translation>
     </message>
 </context>
 <context>
@@ -10548,6 +10575,10 @@ lingual: %4</source>
     <message>
         <source>none</source>
         <translation>なし</translation>
+    </message>
+    <message>
+        <source>comes along: %1</source>
+        <translation>付属する（%1）</translation>
     </message>
 </context>
 <context>

@@ -48,7 +48,7 @@ Simulator::Simulator(const Options& options, QObject* parent)
     settings_.bur = made.bur;
     settings_.cuttingParameters = made.cuttingParameters;
     settings_.drive = driveAt(driveName_.toStdString(), 0.0);
-    speedRpm_ = settings_.drive.freeSpeedRpm;
+    speedRpm_ = chosenRpm_ = settings_.drive.freeSpeedRpm;
     settings_.field = simulation::fieldSettingsAt(1e-3 * voxelUm_);
     settings_.capability = device::pointerCapability();
     connect(&hands_, &DeviceManager::changed, this, &Simulator::passHandpiece);
@@ -376,15 +376,23 @@ void Simulator::setDrive(const QString& name) {
     }
     driveName_ = name;
     speedRpm_ = settings_.drive.freeSpeedRpm;
+    noteDriveChosen();
     if (mayWork()) liveSession_->setDrive(settings_.drive);
     tellDrill();
     emit settingsChanged();
+}
+
+void Simulator::noteDriveChosen() {
+    if (document_.task && !document_.task->drive.empty()) return;
+    chosenDrive_ = driveName_;
+    chosenRpm_ = speedRpm_;
 }
 
 void Simulator::setSpeed(double rpm) {
     if (mode_ == Mode::replay || mode_ == Mode::review) return;
     settings_.drive = driveAt(driveName_.toStdString(), rpm);
     speedRpm_ = settings_.drive.freeSpeedRpm;
+    noteDriveChosen();
     if (mayWork()) liveSession_->setDrive(settings_.drive);
     emit settingsChanged();
 }

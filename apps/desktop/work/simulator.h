@@ -76,6 +76,9 @@ class Simulator : public QObject {
     [[nodiscard]] const QString& burName() const noexcept { return burName_; }
     [[nodiscard]] const QString& driveName() const noexcept { return driveName_; }
     [[nodiscard]] double setSpeedRpm() const noexcept { return speedRpm_; }
+    /// What the person chose for all that names no drive: that of an exercise, an attempt, a replay holds for it alone.
+    [[nodiscard]] const QString& chosenDriveName() const noexcept { return chosenDrive_; }
+    [[nodiscard]] double chosenSpeedRpm() const noexcept { return chosenRpm_; }
     [[nodiscard]] const force::Parameters& parameters() const noexcept { return settings_.parameters; }
     [[nodiscard]] const device::Capability& capability() const noexcept { return settings_.capability; }
     [[nodiscard]] bool isHullMethod() const noexcept { return hull_; }
@@ -290,6 +293,7 @@ class Simulator : public QObject {
     [[nodiscard]] bool mayWork();
     [[nodiscard]] bool mayTakeBack();
     void tellDrill();
+    void noteDriveChosen();
     [[nodiscard]] ReplayDriver::Heard replayEar();
 
     Options options_;
@@ -309,7 +313,8 @@ class Simulator : public QObject {
     QString burName_ = QStringLiteral("330"), driveName_ = QStringLiteral("turbine"), code_;
     simulation::WorkingWay way_{0, false, false, false};  ///< as told last
     std::string sessionCode_;                             ///< that the recording carries, or the next one will
-    double speedRpm_ = 0.0, elapsedS_ = 0.0;
+    QString chosenDrive_ = driveName_;
+    double speedRpm_ = 0.0, chosenRpm_ = 0.0, elapsedS_ = 0.0;
     bool hull_ = false, isTimeTold_ = false;
     /// The tick reads it.
     std::shared_ptr<std::atomic<bool>> isTimeOver_ = std::make_shared<std::atomic<bool>>(false);

@@ -67,8 +67,8 @@ LoadRequest Simulator::request() const {
     request.starterFolder = options_.folders.starters;
     request.sessionFolder = options_.folders.sessions;
     request.bur = burName_.toStdString();
-    request.drive = driveName_.toStdString();
-    request.speedRpm = speedRpm_;
+    request.drive = chosenDrive_.toStdString();
+    request.speedRpm = chosenRpm_;
     request.settings = settings_;
     request.settings.rateHz = options_.rateHz;
     request.settings.resumed = false;

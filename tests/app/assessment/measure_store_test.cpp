@@ -126,6 +126,22 @@ TEST(MeasureStore, AddsToTheSameToothOnly) {
     }
 }
 
+TEST(MeasureStore, TakesWhatIsMissingAndKeepsWhoseItIs) {
+    MeasuredWork kept = someWork(), more = someWork();
+    more.identity.proven = false;
+    more.measured = {{"removed", {}, 2.5, 0.1, {}, {}}, {"isthmus", {}, 9.0, 0.1, {}, {}}};
+    ASSERT_TRUE(takeMissing(kept, more));
+    EXPECT_TRUE(kept.identity.proven);
+    ASSERT_EQ(kept.measured.size(), 4u) << "what it has stays as it is";
+    EXPECT_FALSE(findMeasured(kept, "isthmus", {})->value);
+    EXPECT_EQ(findMeasured(kept, "removed", {})->value, 2.5);
+    EXPECT_EQ(findMeasured(kept, "floor-depth", {}), nullptr) << "that is of the mesial side";
+    more.identity.stateHash = "s2";
+    more.measured.push_back({"ridge", {}, 1.0, 0.1, {}, {}});
+    EXPECT_FALSE(takeMissing(kept, more));
+    EXPECT_EQ(kept.measured.size(), 4u);
+}
+
 TEST(Rescore, OfWhatIsNoWorkIsRowsWithReasonsAndStopsWhenAsked) {
     const test::TemporaryFolder folder;
     EXPECT_THAT(test::errorOf([&] { (void)worksIn(folder.path() / "nowhere"); }), testing::HasSubstr("no such folder"));

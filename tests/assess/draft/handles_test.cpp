@@ -143,6 +143,31 @@ TEST(HandlesOfAnOnlay, LieWhereACuspIsTakenDownTo) {
     }
 }
 
+/// Fissures run over onto the sides of a tooth. There no target follows them, and no handle may hang on them.
+TEST(HandlesOfAnOnlay, LieWhereTheyLieHoweverFarAFissureRunsDownTheSide) {
+    for (const char* preparation : {"onlay", "class-one"}) {
+        SCOPED_TRACE(preparation);
+        const Recipe recipe = recipeOf(preparation, std::string_view(preparation) == "onlay" ? "mesial" : "");
+        cases::Tooth tooth = toothOf(46);
+        const Laid laid = preparation::layOn(tooth, recipe);
+        const std::vector<Handle> before = handlesOf(tooth, recipe, laid);
+        // On the distal side, steep: between the crown's height of contour and its cervix.
+        cases::Landmark side{cases::LandmarkKind::fissure, "side", {}};
+        const core::Box& box = laid.whole->bounds();
+        for (int i = 0; i < 40; ++i) {
+            const double z = box.max.z() - 4.0 - 0.05 * i;
+            const auto hit = laid.whole->firstMeeting({box.min.x() - 1.0, 0.0, z}, core::Vec3::UnitX());
+            ASSERT_TRUE(std::isfinite(hit.distanceMm));
+            side.pointsMm.emplace_back(box.min.x() - 1.0 + hit.distanceMm, 0.0, z);
+        }
+        tooth.landmarks.push_back(std::move(side));
+        const std::vector<Handle> after = handlesOf(tooth, recipe, preparation::layOn(tooth, recipe, laid.whole));
+        ASSERT_EQ(after.size(), before.size());
+        for (std::size_t i = 0; i < after.size(); ++i)
+            EXPECT_EQ(after[i].placeMm, before[i].placeMm) << after[i].number;
+    }
+}
+
 TEST(HandlesOfALesion, StandOverThePulp) {
     cases::Tooth carious = toothOf(46);
     lesion::addLesions(carious, lesion::lesionsByName("occlusal:D3"));

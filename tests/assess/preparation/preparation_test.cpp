@@ -398,6 +398,23 @@ TEST(Preparation, RecipesComeBackFromText) {
     }
 }
 
+TEST(Preparation, APathOfDrawComesBackToTheBit) {
+    std::mt19937_64 generator(test::seed());
+    for (int i = 0; i < 2000; ++i) {
+        const std::string text = fmt::format(
+            "[preparation]\ntemplate = \"painted\"\ndraw = [{}, {}, {}]\n[[preparation.stroke]]\n"
+            "radius_mm = 1\npoints_mm = [[0, 0, 7]]\n",
+            test::uniform(generator, -1.0, 1.0), test::uniform(generator, -1.0, 1.0),
+            test::uniform(generator, 0.6, 1.0));
+        const auto read = [](const std::string& toml) {
+            return readRecipe(*config::Table::parse(toml, "recipe").table("preparation"));
+        };
+        const Recipe once = read(text), twice = read(recipeToml(once));
+        ASSERT_NEAR(once.draw->norm(), 1.0, 1e-12);
+        ASSERT_EQ(*twice.draw, *once.draw) << text;
+    }
+}
+
 TEST(Preparation, BadRecipesAreToldWithTheirLine) {
     const auto errorOf = [](const std::string& text) {
         return test::errorOf(

@@ -80,6 +80,28 @@ TEST(Secrets, AreByChanceAndComparedWhole) {
     EXPECT_TRUE(isSameSecret("", ""));
 }
 
+TEST(StationCodes, AreReadAsTheyAreMeant) {
+    std::set<std::string> all;
+    std::map<char, int> letters;
+    for (int i = 0; i < 2000; ++i) {
+        const std::string code = newStationCode();
+        all.insert(code);
+        ASSERT_EQ(code.size(), 15u);
+        EXPECT_EQ(typedStationCode(code), code);
+        for (const char c : code)
+            ++letters[c];
+    }
+    EXPECT_EQ(all.size(), 2000u);
+    EXPECT_EQ(letters.size(), 33u) << "32 letters and the hyphen";
+    // 24,000 letters: 750 of each, within six times the spread of chance.
+    for (const auto& [letter, count] : letters)
+        if (letter != '-') {
+            EXPECT_NEAR(count, 750, 6 * 27) << letter;
+        }
+    EXPECT_EQ(typedStationCode("abc def ghj k1o"), "ABC-DEF-GHJ-K10");
+    EXPECT_EQ(typedStationCode("ABCDEFGHJKlO"), "ABC-DEF-GHJ-K10");
+}
+
 TEST(Throttling, LetsFiveGuessesPassAndThenEverFewer) {
     EXPECT_EQ(waitAfterFailures(0), 0);
     EXPECT_EQ(waitAfterFailures(4), 0);

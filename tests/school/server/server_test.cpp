@@ -1,176 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // A server, its stations and what goes wrong between them: over real HTTP, with real sessions.
-#include "school/server.h"
-
-#include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <httplib.h>
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <csignal>
+#include <atomic>
 #include <set>
-#include <thread>
 
-#include "app/simulation/live_session_fixture.h"
-#include "handpiece/app/assessment/score_work.h"
-#include "handpiece/assess/task/task.h"
-#include "handpiece/base/core/file.h"
-#include "school/station.h"
+#include "handpiece/school/people/secret.h"
+#include "school/server/school_fixture.h"
 #include "school/worker.h"
 #include "support/error_of.h"
 
 namespace handpiece::school_server {
 namespace {
 
-namespace fs = std::filesystem;
-using school::Act;
-using school::Books;
-using school_station::Enrolment;
 using testing::HasSubstr;
 using testing::SizeIs;
-
-constexpr const char* kRubric = R"(format = 1
-id = "block"
-version = "1"
-title = { en = "Block" }
-status = "proposal"
-source = "a test"
-[[criterion]]
-id = "removed"
-measure = "removed"
-unit = "mm3"
-weight = 1
-knots = [[0, 0], [0.5, 100], [9, 100]]
-title = { en = "removed" }
-source = "a test"
-)";
-
-tasks::Task blockTask() {
-    tasks::Task task;
-    task.id = "block";
-    task.toothCase = simulation::blockCase();
-    task.toothCase.exercise.emplace();
-    task.toothCase.exercise->title = {{"en", "Block"}};
-    task.voxelMm = simulation::blockSettings().field.voxelMm;
-    task.rubric = kRubric;
-    return task;
-}
-
-/// One sitting at the block, recorded once for all tests.
-const fs::path& session() {
-    static const test::TemporaryFolder folder;
-    static const fs::path file = [] {
-        const fs::path path = folder.path() / "one.h5";
-        simulation::SimulationSettings settings = simulation::blockSettings();
-        const instrument::Instrument known = instrument::makeInstrument("round:1.0x0.9");
-        settings.bur = known.bur, settings.cuttingParameters = known.cuttingParameters;
-        const simulation::SimulationSetup station = simulation::makeSimulation(blockTask().toothCase, settings, false);
-        simulation::LiveSessionSettings live;
-        live.sessionFile = path;
-        const auto lead = std::make_shared<simulation::Lead>();
-        simulation::LiveSession sitting(station, blockTask().toothCase,
-                                        simulation::handOf(simulation::twoHoles(), lead), live, nullptr);
-        EXPECT_TRUE(simulation::leadTo(sitting, *lead, 3.1));
-        sitting.stop();
-        return path;
-    }();
-    return file;
-}
-
-/// A server in a thread of its own, with one student and the block as its exercise.
-class School {
-  public:
-    explicit School(const fs::path& data, std::size_t workers = 0, int port = 0) : data_(data) {
-        Settings settings;
-        settings.data = data, settings.port = port, settings.workers = workers;
-        server_ = std::make_unique<Server>(settings);
-        thread_ = std::thread([this] { server_->run(); });
-        httplib::Client http(address());
-        while (!http.Get("/healthz"))
-            std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-    ~School() { stop(); }
-    void stop() {
-        server_->stop();
-        if (thread_.joinable()) thread_.join();
-    }
-    [[nodiscard]] std::string address() const { return fmt::format("http://127.0.0.1:{}", server_->port()); }
-    [[nodiscard]] int port() const { return server_->port(); }
-
-    static void furnish(const fs::path& data) {
-        Books books(data);
-        const Act act{"server", 1};
-        const school::Person student{"s017", "Ida", "ida", "", "", {"student"}, 1, 0};
-        books.add(std::span(&student, 1), act);
-        const tasks::Task task = blockTask();
-        const test::TemporaryFolder folder;
-        const fs::path pack = folder.path() / "block.handpiece";
-        tasks::writeTask(task, pack);
-        const std::vector<std::byte> bytes = core::readFile(pack);
-        const std::string file = school::sha256Of(pack);
-        (void)books.append({std::string(32, '0'), file, bytes.size()}, 0, bytes, 1);
-        const rubric::Rubric rubric = rubric::parseRubric(kRubric, "rubric.toml");
-        const std::string rubricHash = rubric::hashText(rubric::hashOf(rubric));
-        books.add(school::RubricVersion{rubricHash, "block", kRubric, 1, 1}, act);
-        books.add(school::Pack{rubric::hashText(tasks::contentHash(task)), file, "block", "Block", rubricHash, 1}, act);
-        books.offerCode("CODE-AAAA-BBBB", "chair 1", 4'000'000'000'000, act);
-        books.offerCode("CODE-CCCC-DDDD", "chair 2", 4'000'000'000'000, act);
-    }
-
-  private:
-    fs::path data_;
-    std::unique_ptr<Server> server_;
-    std::thread thread_;
-};
-
-/// A person's own computer.
-class Chair {
-  public:
-    Chair() : store_(home_.path() / "results.db") { fs::create_directories(home_.path() / "sessions"); }
-    /// Work that was finished and scored here.
-    std::string finish(const fs::path& recording, const std::string& name, double score = 100.0) {
-        fs::copy_file(recording, home_.path() / "sessions" / name);
-        const rubric::Rubric rubric = rubric::parseRubric(kRubric, "rubric.toml");
-        school::Attempt a;
-        a.id = school::newId();
-        a.exercise = "block", a.exerciseHash = rubric::hashText(tasks::contentHash(blockTask()));
-        a.rubricHash = rubric::hashText(rubric::hashOf(rubric));
-        a.sessionHashes = {assessment::workHash(recording)}, a.recordings = {name};
-        a.began = 1000, a.finished = 5000;
-        a.device = "simulated", a.score = score, a.maxScore = 100.0, a.wholeScore = 100.0, a.passed = "teacher";
-        a.result = "{}";
-        store_.add(a);
-        return a.id;
-    }
-    school_station::Pushed push(Enrolment& enrolment) {
-        return school_station::push(store_, home_.path() / "sessions", enrolment, home_.path() / "school.json");
-    }
-    [[nodiscard]] Enrolment kept() const { return school_station::readEnrolment(home_.path() / "school.json"); }
-    school::Store& store() { return store_; }
-    [[nodiscard]] fs::path home() const { return home_.path(); }
-
-  private:
-    test::TemporaryFolder home_;
-    school::Store store_;
-};
-
-class SchoolTest : public testing::Test {
-  protected:
-    void SetUp() override { School::furnish(data()); }
-    [[nodiscard]] fs::path data() const { return folder_.path() / "school"; }
-    [[nodiscard]] Books books() const { return Books(data()); }
-    [[nodiscard]] std::vector<school::Score> scoresOf(const std::string& attempt) const {
-        return books().scoresOf(attempt);
-    }
-    test::TemporaryFolder folder_;
-};
 
 TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     const std::string attempt = chair.finish(session(), "one.h5");
     chair.store().add(school::Judgement{attempt, 80.0, "fine", 6000});
     const school_station::Pushed pushed = chair.push(enrolment);
@@ -207,7 +54,7 @@ TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
 TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     const std::string boast = chair.finish(session(), "one.h5", 99.0);
     // The recording was changed after the score: the bytes are others than the attempt names.
     const std::string changed = chair.finish(session(), "two.h5");
@@ -225,6 +72,27 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
     EXPECT_THAT(scoresOf(changed).front().reason, HasSubstr("another than the attempt names"));
 }
 
+TEST_F(SchoolTest, WorkOnWhatTheSchoolGaveIsToldAsThat) {
+    School school(data());
+    {
+        Books open(data());
+        const Act act{"server", 1};
+        open.add(school::SchoolClass{"c1", "Class", "", 0, 1, 0}, act);
+        const school::Enrolment one{"c1", "s017", "student"};
+        open.enrol(std::span(&one, 1), act);
+        const std::string exercise = rubric::hashText(tasks::contentHash(blockTask()));
+        const std::string rubric = open.pack(exercise)->rubric;
+        open.add(school::Assignment{"early", "c1", exercise, rubric, "Early", "practice", "", 1, 500}, act);
+        open.add(school::Assignment{"now", "c1", exercise, rubric, "Now", "practice", "", 2000, 9000}, act);
+    }
+    Chair chair;
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
+    const std::string attempt = chair.finish(session(), "one.h5");
+    (void)chair.push(enrolment);
+    EXPECT_EQ(books().attempt(attempt)->assignment, "now");
+    EXPECT_EQ(books().classPage("c1").cells.size(), 1u);
+}
+
 TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
     Chair chair;
     Enrolment enrolment;
@@ -232,7 +100,7 @@ TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
     {
         School school(data());
         port = school.port();
-        enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+        enrolment = school_station::enrol(school.address(), kCode, "s017");
     }
     const std::string attempt = chair.finish(session(), "one.h5");
     EXPECT_THAT(test::errorOf([&] { (void)chair.push(enrolment); }), HasSubstr("nobody answers there"));
@@ -246,7 +114,7 @@ TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
 TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
     School school(data());
     Chair chair;
-    Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     (void)chair.finish(session(), "one.h5");
     // Half of the file came before the network went.
     const std::string hash = school::sha256Of(session());
@@ -263,10 +131,12 @@ TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
 
 TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
     School school(data());
+    std::vector<std::string> codes;
     {
         Books open(data());
         for (int i = 0; i < 30; ++i)
-            open.offerCode(fmt::format("CODE-{:08}", i), fmt::format("chair {}", i), 4'000'000'000'000, {"server", 1});
+            open.offerCode(codes.emplace_back(school::newStationCode()), fmt::format("chair {}", i), 4'000'000'000'000,
+                           {"server", 1});
     }
     (void)session();
     std::vector<std::thread> chairs;
@@ -277,7 +147,8 @@ TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
         chairs.emplace_back([&, i] {
             try {
                 Chair chair;
-                Enrolment enrolment = school_station::enrol(school.address(), fmt::format("CODE-{:08}", i), "s017");
+                Enrolment enrolment =
+                    school_station::enrol(school.address(), codes[static_cast<std::size_t>(i)], "s017");
                 for (int k = 0; k < 3; ++k) {
                     const std::string id = chair.finish(session(), fmt::format("{}.h5", k));
                     const std::lock_guard lock(mutex);
@@ -325,7 +196,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
             EXPECT_EQ(other->status, 426);
         }
     }
-    for (const char* path : {"/", "/api/v1/files/../../books.db", "/api/v1/files/%2e%2e%2fbooks.db", "/books.db",
+    for (const char* path : {"/api/v1/files/../../books.db", "/api/v1/files/%2e%2e%2fbooks.db", "/books.db",
                              "/api/v1/files/AAAA", "/api/v2/status"}) {
         const auto result = http.Get(path);
         ASSERT_TRUE(result) << path;
@@ -333,8 +204,8 @@ TEST_F(SchoolTest, StrangersGetNothing) {
     }
     const auto wrong = http.Post("/api/v1/enrol", R"({"code": "nobody's"})", "application/json");
     EXPECT_EQ(wrong->status, 403);
-    const Enrolment once = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
-    EXPECT_THAT(test::errorOf([&] { (void)school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017"); }),
+    const Enrolment once = school_station::enrol(school.address(), kCode, "s017");
+    EXPECT_THAT(test::errorOf([&] { (void)school_station::enrol(school.address(), kCode, "s017"); }),
                 HasSubstr("was used"));
     // A key that was taken back.
     {
@@ -346,7 +217,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
 
 TEST_F(SchoolTest, DamagedMessagesAreOneClearErrorEach) {
     School school(data());
-    const Enrolment enrolment = school_station::enrol(school.address(), "CODE-AAAA-BBBB", "s017");
+    const Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
     httplib::Client http(school.address());
     const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + enrolment.key}};
     for (const std::string& body :
@@ -390,7 +261,7 @@ TEST(Station, ANonsenseServerIsToldAndChangesNothing) {
                                                                                {"{\"what\": 3}", 404},
                                                                                {std::string(1 << 16, '{'), 200}}) {
         body = answer, status = code;
-        EXPECT_NE(test::errorOf([&] { (void)school_station::enrol(address, "CODE-AAAA-BBBB", "s017"); }), "") << answer;
+        EXPECT_NE(test::errorOf([&] { (void)school_station::enrol(address, kCode, "s017"); }), "") << answer;
     }
     Chair chair;
     (void)chair.finish(session(), "one.h5");

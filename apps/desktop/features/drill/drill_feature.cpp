@@ -268,8 +268,8 @@ void DrillFeature::showSettings() {
 void DrillFeature::keepSettings() {
     const force::Parameters& p = simulator_.parameters();
     settings_.set(QStringLiteral("work/bur"), simulator_.burName());
-    settings_.set(QStringLiteral("work/drive"), simulator_.driveName());
-    settings_.set(QStringLiteral("work/speedRpm"), simulator_.setSpeedRpm());
+    settings_.set(QStringLiteral("work/drive"), simulator_.chosenDriveName());
+    settings_.set(QStringLiteral("work/speedRpm"), simulator_.chosenSpeedRpm());
     if (simulator_.mode() == Simulator::Mode::liveSession)
         settings_.set(QStringLiteral("work/voxelUm"), simulator_.startVoxelUm());
     settings_.set(QStringLiteral("work/stiffness"), p.stiffnessMultiplier);

@@ -2,6 +2,7 @@
 #include "desktop/features/editor/editor_feature.h"
 
 #include <QFileInfo>
+#include <QLocale>
 #include <QMessageBox>
 #include <QPushButton>
 #include <QTimer>
@@ -212,20 +213,37 @@ void EditorFeature::takeTeacherWork() {
     if (!now.tooth) return window_.showProblem(problemById(QStringLiteral("teacher-work-without-tooth")));
     const QString file = window_.questions.open(tr("Your own work"), tr("Recordings (*.h5);;All files (*)"));
     if (file.isEmpty()) return;
-    const auto work = std::make_shared<std::shared_ptr<const std::vector<std::byte>>>();
+    struct Taken {
+        std::shared_ptr<const std::vector<std::byte>> file;
+        std::optional<score::Result> result;
+    };
+    const auto taken = std::make_shared<Taken>();
+    const bool isJudged = now.preparation && now.rubric && !draft::hasErrors(dialog_->problems());
     dialog_->workPage()->setTeacherWorkNote(tr("It is cut again..."));
     start(
         proving_, QString(),
-        [now, work, path = toPath(file)](const core::Progress& progress) {
-            *work = assessment::provenWork(path, draft::taskOf(now), progress);
+        [now, taken, isJudged, path = toPath(file)](const core::Progress& progress) {
+            const tasks::Task task = draft::taskOf(now);
+            const assessment::ProvenWork proven = assessment::provenWork(path, task, core::part(progress, 0.0, 0.8));
+            taken->file = proven.file;
+            // A session does not say of which exercise it is: its points do.
+            if (isJudged)
+                taken->result = assessment::scoreWork(proven.work, task, *now.rubric, core::part(progress, 0.8, 1.0));
         },
         [this] { dialog_->workPage()->setTeacherWorkNote({}); },
-        [this, work, tooth = now.tooth, voxelMm = now.voxelMm] {
+        [this, taken, tooth = now.tooth, voxelMm = now.voxelMm] {
             // What it was proven against may be another by now.
             const draft::Content& is = dialog_->draft().now();
             if (is.tooth != tooth || is.voxelMm != voxelMm)
                 return window_.showProblem(problemById(QStringLiteral("teacher-work-too-late")));
-            dialog_->change("", [&](draft::Content& c) { c.teacherWork = *work; });
+            dialog_->change("", [&](draft::Content& c) { c.teacherWork = taken->file; });
+            if (!taken->result) return;
+            const score::Assessment& judged = taken->result->assessment;
+            const QString points = QLocale().toString(judged.score, 'f', 1),
+                          most = QLocale().toString(judged.maxScore, 'f', 0);
+            dialog_->workPage()->setTeacherWorkPoints(taken->file, tr("%1 of %2 points").arg(points, most));
+            if (judged.passed == score::Passed::no)
+                window_.showProblem(problemById(QStringLiteral("teacher-work-fails"), {points, most}));
         });
 }
 

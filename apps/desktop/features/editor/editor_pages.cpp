@@ -10,9 +10,9 @@
 #include <QLineEdit>
 #include <QListWidget>
 #include <QLocale>
-#include <QMouseEvent>
 #include <QPlainTextEdit>
 #include <QPushButton>
+#include <QScrollArea>
 #include <QSignalBlocker>
 #include <QSpinBox>
 #include <QVBoxLayout>
@@ -21,6 +21,7 @@
 #include <utility>
 
 #include "desktop/features/editor/editor_words.h"
+#include "desktop/features/editor/own_target.h"
 #include "desktop/framework/helps.h"
 #include "desktop/picture/solid_view.h"
 #include "desktop/widgets/parts.h"
@@ -33,6 +34,8 @@ namespace handpiece::desktop {
 namespace {
 
 using draft::Content;
+
+constexpr int kNumbersPixels = 330;
 
 /// Where students read the level's words, which are its name.
 constexpr const char* kChoice = "handpiece::desktop::ExercisesDialog";
@@ -117,8 +120,16 @@ void ToothPage::setWork(const QString& text) {
 PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) {
     setObjectName(QStringLiteral("editorPreparation"));
     auto* columns = new QHBoxLayout(this);
-    form_ = new QFormLayout;
-    columns->addLayout(form_, 2);
+    // An onlay has more numbers than a small screen has room for: they scroll, the picture stays.
+    auto* scroll = new QScrollArea(this);
+    auto* column = new QWidget;
+    form_ = new QFormLayout(column);
+    scroll->setWidgetResizable(true);
+    scroll->setFrameShape(QFrame::NoFrame);
+    scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+    scroll->setWidget(column);
+    scroll->setMinimumWidth(kNumbersPixels);
+    columns->addWidget(scroll, 2);
     auto* beside = new QVBoxLayout;
     columns->addLayout(beside, 3);
     picture_ = new SolidView("editorPicture", this);
@@ -156,7 +167,9 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
         const std::string side = side_->currentData().toString().toStdString();
         change_("side", [&](Content& c) { c = draft::withSide(std::move(c), side); });
     });
-    makeOwn();
+    own_ = new OwnTarget(*picture_, *form_, change_, this);
+    connect(own_, &OwnTarget::workRequested, this, &PreparationPage::workRequested);
+    connect(own_, &OwnTarget::strokeGrew, this, &PreparationPage::showStroke);
     numbers_ = new QWidget(this);
     new QFormLayout(numbers_);
     form_->addRow(numbers_);
@@ -180,121 +193,11 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
         [](preparation::Recipe& r, double v) { r.pulpMm = v; });
 }
 
-/// What targets of one's own have beside their numbers.
-void PreparationPage::makeOwn() {
-    work_ = named(new QPushButton(tr("Take work..."), this), "editorTakeWork", tr("Take work"),
-                  tr("A session or an attempt: what was cut in it is the target, in the voxel it was cut in"));
-    form_->addRow(work_);
-    connect(work_, &QPushButton::clicked, this, &PreparationPage::workRequested);
-    like_ = named(new QComboBox(this), "editorLike", tr("Judged as"),
-                  tr("Says how it is measured, and which rubric comes along"));
-    like_->addItem(tr("nothing of these"), QString());
-    for (const preparation::Template& t : preparation::templates())
-        if (!t.isOwn && !t.isBlock) like_->addItem(templateWords(t.id), plain(t.id));
-    likeLabel_ = new QLabel(tr("Judged as"), this);
-    form_->addRow(likeLabel_, like_);
-    connect(like_, &QComboBox::activated, this, [this] {
-        const std::string id = like_->currentData().toString().toStdString();
-        change_("like", [&](Content& c) { c = draft::withLike(std::move(c), id); });
-    });
-    brush_ = named(new QComboBox(this), "editorBrush", tr("Left button"), tr("On the tooth; beside it: turn"));
-    brush_->addItems({tr("paints"), tr("erases"), tr("turns the tooth")});
-    brushLabel_ = new QLabel(tr("Left button"), this);
-    form_->addRow(brushLabel_, brush_);
-    radius_ = millimetres(this, "editorBrushRadius", tr("Radius of the brush"));
-    radius_->setRange(preparation::kLeastBrushMm, preparation::kMostBrushMm);
-    radius_->setValue(0.6);
-    radiusLabel_ = new QLabel(tr("Radius of the brush"), this);
-    form_->addRow(radiusLabel_, radius_);
-    picture_->installEventFilter(this);
-}
-
-bool PreparationPage::isPainted() const {
-    return recipe_ && recipe_->preparation == preparation::kPaintedTemplate;
-}
-
-bool PreparationPage::isBlank() const {
-    return recipe_ && ((isPainted() && recipe_->strokes.empty()) ||
-                       (recipe_->preparation == preparation::kRecordedTemplate && !recipe_->recorded));
-}
-
-std::optional<core::Vec3> PreparationPage::under(const QPointF& pointer) {
-    if (!tooth_) return std::nullopt;
-    if (brushed_ != tooth_) {
-        canvas_ = std::make_shared<const geometry::TriangleTree>(tooth_->surface());
-        brushed_ = tooth_;
-    }
-    const view::Ray ray =
-        view::rayThrough(picture_->camera(), {std::max(1, picture_->width()), std::max(1, picture_->height())},
-                         {pointer.x(), pointer.y()});
-    const geometry::RayMeeting met = canvas_->firstMeeting(ray.originMm, ray.direction);
-    if (met.triangle == geometry::kNoTriangle) return std::nullopt;
-    return ray.originMm + met.distanceMm * ray.direction;
-}
-
-bool PreparationPage::eventFilter(QObject* watched, QEvent* event) {
-    enum { paints, erases, turns };
-    const auto* mouse = static_cast<const QMouseEvent*>(event);
-    const bool isLeft = mouse->button() == Qt::LeftButton;
-    if (watched != picture_) return EditorPage::eventFilter(watched, event);
-    switch (event->type()) {
-        case QEvent::MouseButtonPress: {
-            if (!isLeft || !isPainted() || shows_ != Shown::task || brush_->currentIndex() == turns) break;
-            const std::optional<core::Vec3> at = under(mouse->position());
-            if (!at) break;
-            stroke_ = preparation::BrushStroke{{*at}, radius_->value(), brush_->currentIndex() == erases};
-            showStroke();
-            return true;
-        }
-        case QEvent::MouseMove:
-            if (!stroke_) break;
-            if (const std::optional<core::Vec3> at = under(mouse->position());
-                at && (*at - stroke_->pointsMm.back()).norm() >= 0.25 * stroke_->radiusMm) {
-                stroke_->pointsMm.push_back(*at);
-                showStroke();
-            }
-            return true;
-        case QEvent::MouseButtonRelease: {
-            if (!stroke_ || !isLeft) break;
-            const preparation::BrushStroke stroke = *std::exchange(stroke_, std::nullopt);
-            // A stroke is a step back.
-            change_("", [&](Content& c) {
-                c = draft::beginStroke(std::move(c), stroke.pointsMm.front(), stroke.radiusMm, stroke.erases);
-                for (const core::Vec3& p : stroke.pointsMm)
-                    c = draft::extendStroke(std::move(c), p);
-            });
-            return true;
-        }
-        default:
-            break;
-    }
-    return EditorPage::eventFilter(watched, event);
-}
-
+/// The brush as far as it has come, over the glass that is there.
 void PreparationPage::showStroke() {
-    // An eight-sided stone of the brush's size where it has been.
-    auto mesh = std::make_shared<geometry::TriangleMesh>();
-    for (const core::Vec3& p : stroke_->pointsMm) {
-        const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
-        for (int k = 0; k < 3; ++k)
-            for (const double sign : {1.0, -1.0})
-                mesh->vertices.push_back(p + sign * stroke_->radiusMm * core::Vec3::Unit(k));
-        for (std::uint32_t i = 0; i < 8; ++i) {
-            const std::uint32_t x = first + (i & 1), y = first + 2 + (i >> 1 & 1), z = first + 4 + (i >> 2 & 1);
-            const bool isEven = ((i & 1) + (i >> 1 & 1) + (i >> 2 & 1)) % 2 == 0;
-            mesh->triangles.push_back(isEven ? geometry::Triangle{x, y, z} : geometry::Triangle{x, z, y});
-        }
-    }
     std::vector<view::GlassSurface> all =
         recipe_->strokes.empty() ? std::vector<view::GlassSurface>{} : glass_.surfaces();
-    view::GlassSurface brush;
-    brush.mesh = std::move(mesh);
-    if (stroke_->erases)
-        brush.colour = {0.9f, 0.9f, 0.9f};
-    else
-        brush.colour = {0.3f, 0.6f, 1.0f};
-    brush.alpha = 0.4f;
-    all.push_back(std::move(brush));
+    all.push_back(own_->strokeGlass());
     picture_->setGlass(std::move(all));
 }
 
@@ -391,12 +294,12 @@ void PreparationPage::takeGlass() {
     for (const draft::Handle& h : handles_)
         shown.push_back({h.placeMm, h.way, handleText(h.number, glass_.recipe().number(h.number))});
     picture_->setHandles(std::move(shown));
-    picture_->setCaption(isPainted() ? tr("Green is to go, orange must stay: paint on with the left button")
-                         : handles_.empty()
-                             ? tr("Green is to go, orange must stay")
-                             : tr("Green is to go, orange must stay: drag a white handle to change a number"),
-                         false);
-    if (stroke_) showStroke();
+    picture_->setCaption(
+        OwnTarget::isPainted(recipe_) ? tr("Green is to go, orange must stay: paint on with the left button")
+        : handles_.empty()            ? tr("Green is to go, orange must stay")
+                                      : tr("Green is to go, orange must stay: drag a white handle to change a number"),
+        false);
+    if (own_->isPainting()) showStroke();
     if (!picture_->isDragging()) look(false);
 }
 
@@ -418,6 +321,7 @@ void PreparationPage::look(bool anew) {
 
 void PreparationPage::showTask() {
     shows_ = tooth_ ? Shown::task : Shown::nothing;
+    own_->setPaintable(shows_ == Shown::task);
     idealButton_->setText(tr("Cut it out"));
     if (!tooth_) {
         picture_->setParts(nullptr, {});
@@ -435,11 +339,11 @@ void PreparationPage::showTask() {
             box.extend(v);
     picture_->setParts(parts, box);
     picture_->setCaption(recipe_ ? tr("Laying the preparation on the tooth...") : tr("Choose a preparation"), false);
-    if (isBlank())
-        picture_->setCaption(
-            isPainted() ? tr("Paint on the tooth with the left button") : tr("Take the work whose cut is the target"),
-            false);
-    if (!recipe_ || isBlank()) {
+    if (OwnTarget::isBlank(recipe_))
+        picture_->setCaption(OwnTarget::isPainted(recipe_) ? tr("Paint on the tooth with the left button")
+                                                           : tr("Take the work whose cut is the target"),
+                             false);
+    if (!recipe_ || OwnTarget::isBlank(recipe_)) {
         glass_.hide();
         handles_.clear();
         picture_->setGlass({});
@@ -459,7 +363,7 @@ void PreparationPage::refreshPicture() {
     // What was held belongs to what was there.
     if (picture_->isDragging()) picture_->setHandles({});
     if (pictured_ != tooth_) lookedAt_.clear();
-    if (shows_ == Shown::task && pictured_ == tooth_ && tooth_ && recipe_ && !isBlank()) {
+    if (shows_ == Shown::task && pictured_ == tooth_ && tooth_ && recipe_ && !OwnTarget::isBlank(recipe_)) {
         if (!glassOf_ || glassOf_->preparation != recipe_->preparation) {
             // What stood there was of another one.
             handles_.clear();
@@ -489,6 +393,7 @@ void PreparationPage::setIdeal(std::shared_ptr<const std::vector<cases::Part>> p
         for (const core::Vec3& v : part.mesh.vertices)
             box.extend(v);
     shows_ = Shown::ideal;
+    own_->setPaintable(false);
     picture_->setGlass({});
     picture_->setHandles({});
     picture_->setParts(parts, box);
@@ -507,12 +412,8 @@ void PreparationPage::show(const Content& content) {
     const preparation::Template* of = preparation::findTemplate(id);
     template_->setCurrentIndex(std::max(0, template_->findData(QString::fromStdString(id))));
     const preparation::Template* kind = recipe ? preparation::findTemplate(recipe->kind()) : nullptr;
-    const bool hasSide = kind != nullptr && kind->hasSide, isOwn = of != nullptr && of->isOwn;
-    work_->setVisible(id == preparation::kRecordedTemplate);
-    like_->setVisible(isOwn), likeLabel_->setVisible(isOwn);
-    for (QWidget* one : std::initializer_list<QWidget*>{brush_, brushLabel_, radius_, radiusLabel_})
-        one->setVisible(id == preparation::kPaintedTemplate);
-    if (recipe) like_->setCurrentIndex(std::max(0, like_->findData(QString::fromStdString(recipe->like))));
+    const bool hasSide = kind != nullptr && kind->hasSide;
+    own_->show(content);
     side_->setVisible(hasSide);
     sideLabel_->setVisible(hasSide);
     if (recipe) side_->setCurrentIndex(std::max(0, side_->findData(QString::fromStdString(recipe->side))));
@@ -523,7 +424,6 @@ void PreparationPage::show(const Content& content) {
             setValue(field, recipe->number(name));
     tooth_ = content.tooth;
     recipe_ = content.preparation;
-    if (!isPainted()) stroke_.reset();
     for (QDoubleSpinBox* field : {leewaySide_, leewayFloor_, pulp_})
         field->setEnabled(recipe != nullptr);
     const preparation::Recipe plainOne;
@@ -725,15 +625,24 @@ void WorkPage::setTeacherWorkNote(const QString& words) {
     showTeacherWork();
 }
 
+void WorkPage::setTeacherWorkPoints(std::shared_ptr<const std::vector<std::byte>> of, const QString& words) {
+    pointsOf_ = std::move(of);
+    points_ = words;
+    showTeacherWork();
+}
+
 void WorkPage::showTeacherWork() {
     takeTeacherWork_->setEnabled(!isTakingWork_);
-    dropTeacherWork_->setEnabled(!isTakingWork_ && hasTeacherWork_);
-    if (!isTakingWork_) teacherWork_->setText(hasTeacherWork_ ? tr("comes along") : tr("none"));
+    dropTeacherWork_->setEnabled(!isTakingWork_ && work_);
+    if (!isTakingWork_)
+        teacherWork_->setText(!work_               ? tr("none")
+                              : work_ == pointsOf_ ? tr("comes along: %1").arg(points_)
+                                                   : tr("comes along"));
 }
 
 void WorkPage::show(const Content& content) {
     showing_ = true;
-    hasTeacherWork_ = content.teacherWork != nullptr;
+    work_ = content.teacherWork;
     showTeacherWork();
     const cases::Exercise& e = content.exercise;
     const QString bur = QString::fromStdString(e.bur);

@@ -9,7 +9,6 @@
 #include "desktop/features/editor/editor_page.h"
 #include "desktop/work/zone_glass.h"
 #include "handpiece/assess/draft/handles.h"
-#include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/senses/view/camera.h"
 
 class QCheckBox;
@@ -25,6 +24,7 @@ class QSpinBox;
 
 namespace handpiece::desktop {
 
+class OwnTarget;
 class SolidView;
 
 /// [editorTooth]
@@ -74,19 +74,11 @@ class PreparationPage : public EditorPage {
     void workRequested();
 
   protected:
-    bool eventFilter(QObject* watched, QEvent* event) override;
     void showEvent(QShowEvent* event) override;
 
   private:
     enum class Shown { nothing, task, ideal };
     void connectPicture();
-    void makeOwn();
-    [[nodiscard]] bool isPainted() const;
-    /// A target of one's own that has no shape yet.
-    [[nodiscard]] bool isBlank() const;
-    /// Where the pointer meets the tooth.
-    [[nodiscard]] std::optional<core::Vec3> under(const QPointF& pointer);
-    /// The brush as far as it has come, over the glass that is there.
     void showStroke();
     void showNumbers(const preparation::Template* of);
     void showField(std::string_view name, double value);
@@ -107,13 +99,9 @@ class PreparationPage : public EditorPage {
     ZoneGlass glass_;
     std::vector<draft::Handle> handles_;
     std::optional<draft::Handle> dragged_;  ///< as it was when it was taken
-    QComboBox *template_, *side_, *like_, *brush_;
-    QLabel *sideLabel_, *likeLabel_, *brushLabel_, *radiusLabel_;
-    QPushButton* work_;
-    QDoubleSpinBox* radius_;
-    std::shared_ptr<const cases::Case> brushed_;            ///< of the tree
-    std::shared_ptr<const geometry::TriangleTree> canvas_;  ///< of its surface
-    std::optional<preparation::BrushStroke> stroke_;        ///< while it is being painted
+    OwnTarget* own_;
+    QComboBox *template_, *side_;
+    QLabel* sideLabel_;
     QWidget* numbers_ = nullptr;
     QFormLayout* form_;
     std::string shown_ = "?";  ///< the template whose numbers are there
@@ -137,11 +125,15 @@ class WorkPage : public EditorPage {
   public:
     /// What is being done with the teacher's own work; empty: nothing.
     void setTeacherWorkNote(const QString& words);
+    /// What it got when it was taken, told for as long as it is this work.
+    void setTeacherWorkPoints(std::shared_ptr<const std::vector<std::byte>> of, const QString& words);
 
   private:
     QLabel* teacherWork_;
     QPushButton *takeTeacherWork_, *dropTeacherWork_;
-    bool isTakingWork_ = false, hasTeacherWork_ = false;
+    bool isTakingWork_ = false;
+    std::shared_ptr<const std::vector<std::byte>> work_, pointsOf_;
+    QString points_;
     void showTeacherWork();
     QComboBox *bur_, *drive_, *level_;
     QListWidget *burs_, *helps_;

@@ -16,6 +16,7 @@
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/recording.h"
+#include "handpiece/app/assessment/student_page.h"
 #include "handpiece/app/course/retest.h"
 #include "handpiece/app/report/assessment_pictures.h"
 #include "handpiece/base/core/error.h"
@@ -405,8 +406,15 @@ void PracticeFeature::makeIdeal() {
         if (done_ != of) return;
         teacherWork_ = beside->teacherWork;
         result_->setHasTeacherWork(teacherWork_ != nullptr);
-        result_->setIdeal(beside->ideal);
+        result_->setIdeal(beside->ideal, tr("This exercise asks for no preparation: there is no ideal."));
     });
+    connect(ideal_.get(), &Job::failed, this, [this, beside, of = done_](const Problem& problem) {
+        if (done_ != of) return;
+        teacherWork_ = beside->teacherWork;
+        result_->setHasTeacherWork(teacherWork_ != nullptr);
+        result_->setIdeal({}, tr("The ideal cannot be shown. %1").arg(problem.what));
+    });
+    result_->setIdeal({}, tr("The ideal is being cut: it can be chosen in some seconds."));
     ideal_->start();
 }
 
@@ -572,15 +580,17 @@ void PracticeFeature::savePage() {
     const QString file =
         window_.questions.save(tr("Save the result"), QString::fromStdString(done_->work.task->id) + ".html",
                                tr("Page (*.html)"), QStringLiteral(".html"));
-    write(
-        tr("Writing the page"), tr("Written: %1").arg(file), file,
-        [done = done_, path = toPath(file)](const core::Progress& progress) {
-            const course::FinishedWork& work = done->work;
-            const report::AssessmentPictures pictures =
-                report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
-                                           core::part(progress, 0.0, 0.9));
-            core::writeFile(path, report::studentReport(work.result, *work.task, work.rubric, pictures), {true, true});
-        });
+    write(tr("Writing the page"), tr("Written: %1").arg(file), file,
+          [done = done_, path = toPath(file)](const core::Progress& progress) {
+              const course::FinishedWork& work = done->work;
+              const report::AssessmentPictures pictures =
+                  report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
+                                             core::part(progress, 0.0, 0.3));
+              core::writeFile(path,
+                              assessment::studentPage(work.work, work.result, *work.task, work.rubric, pictures, true,
+                                                      core::part(progress, 0.3, 1.0)),
+                              {true, true});
+          });
 }
 
 void PracticeFeature::handIn() {

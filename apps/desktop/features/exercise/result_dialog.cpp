@@ -257,9 +257,11 @@ void ResultDialog::fillTeacher() {
     teacher_->setVisible(!lines.isEmpty());
 }
 
-void ResultDialog::setIdeal(course::Parts ideal) {
+void ResultDialog::setIdeal(course::Parts ideal, const QString& why) {
     ideal_ = std::move(ideal);
+    noIdeal_ = ideal_ ? QString() : why;
     which_->button(1)->setEnabled(ideal_ != nullptr);
+    which_->button(1)->setToolTip(noIdeal_.isEmpty() ? tr("The ideal") : noIdeal_);
     showTooth();
 }
 
@@ -354,7 +356,7 @@ void ResultDialog::fill() {
     fillTable();
     fillTeacher();
     which_->button(0)->setChecked(true);
-    setIdeal(ideal_);
+    setIdeal(ideal_, noIdeal_);
 }
 
 void ResultDialog::fillErrors() {
@@ -459,8 +461,10 @@ void ResultDialog::showTooth() {
     // As it was worked on: a cavity from palatal is not seen from labial.
     if (const auto& exercise = done_->work.task->toothCase.exercise; isFirst && exercise && exercise->view)
         tooth_->setCamera(lookingAs({}, *exercise->view));
-    if (!parts) return tooth_->setCaption(tr("Its recording is no longer kept: the tooth cannot be shown"), false);
-    tooth_->setCaption(isIdeal ? tr("The ideal: drag to turn it") : tr("Your tooth: drag to turn it"), false);
+    const QString caption = !parts    ? tr("Its recording is no longer kept: the tooth cannot be shown")
+                            : isIdeal ? tr("The ideal: drag to turn it")
+                                      : tr("Your tooth: drag to turn it");
+    tooth_->setCaption(noIdeal_.isEmpty() ? caption : caption + QLatin1Char('\n') + noIdeal_, false);
 }
 
 }  // namespace handpiece::desktop

@@ -42,7 +42,8 @@ class ResultDialog : public QDialog {
     /// Of a result of before: what was said of it then, by oneself and by teachers.
     void setSaid(std::optional<OwnJudgement> own, const std::vector<school::Comment>& comments,
                  std::vector<marking::ReturnedMarks> returned);
-    void setIdeal(course::Parts ideal);
+    /// Null: none is shown, `why` in a sentence.
+    void setIdeal(course::Parts ideal, const QString& why = {});
     void setHasTeacherWork(bool has);
     /// What is being written of it, or was: said in its own window, which lies over the other one. While `isBusy`
     /// nothing else can be written.
@@ -82,6 +83,7 @@ class ResultDialog : public QDialog {
 
     std::shared_ptr<const Simulator::Finished> done_;
     course::Parts ideal_;
+    QString noIdeal_;  ///< why there is none
     std::optional<OwnJudgement> own_;
     bool isAsking_ = false;
     bool hasTooth_ = false;  ///< of this result one was shown, so that the eye has its place

@@ -61,6 +61,10 @@ std::optional<core::Vec3> placeIn(const QVariant& data) {
     if (list.size() != 3) return {};
     return core::Vec3(list[0].toDouble(), list[1].toDouble(), list[2].toDouble());
 }
+/// What the fields of a decision show.
+std::pair<int, QString> decisionFields(const std::optional<marking::Decision>& said) {
+    return said ? std::pair(said->passed ? 1 : 2, QString::fromStdString(said->reason)) : std::pair(0, QString());
+}
 std::optional<double> timeIn(const QVariant& data) {
     return data.isValid() ? std::optional(data.toDouble()) : std::nullopt;
 }
@@ -265,9 +269,11 @@ void SheetPanel::showWork(const marking::Desk* desk, const QString& code, const 
             open.insert(criteria_->topLevelItem(row)->data(kName, kIdRole).toString());
     const int scrolled = code == code_ ? criteria_->verticalScrollBar()->value() : 0;
     const bool isOther = code != code_;
-    if (isOther) comment_->clear();
+    if (isOther && !code_.isEmpty()) waiting(code_.toStdString()).comment = comment_->text();
     desk_ = code.isEmpty() ? nullptr : desk;
     code_ = desk_ != nullptr ? code : QString();
+    if (desk_ != nullptr) deskName_ = desk_->folder().string() + '\n' + desk_->marker();
+    if (isOther) comment_->setText(desk_ != nullptr ? waiting(code_.toStdString()).comment : QString());
     setEnabled(desk_ != nullptr);
     title_->setText(desk_ == nullptr ? QString() : tr("%1, %2").arg(code_, place));
     previous_->setEnabled(hasPrevious);
@@ -437,14 +443,8 @@ void SheetPanel::showEditor() {
             now.said = said->second;
         now.decision = sheet.decision;
     }
-    const auto set = [](QComboBox* box, int index) {
-        const QSignalBlocker quiet(box);
-        box->setCurrentIndex(index);
-    };
-    if (!edited_ || edited_->code != id || edited_->decision != now.decision) {
-        set(decision_, !now.decision ? 0 : now.decision->passed ? 1 : 2);
-        decisionReason_->setText(now.decision ? QString::fromStdString(now.decision->reason) : QString());
-    }
+    keepTyped(now);
+    if (!edited_ || edited_->code != id || edited_->decision != now.decision) showDecision(id, now.decision);
     decisionRow_->setVisible(desk_ != nullptr && desk_->finalScore(id).has_value());
     // What is half typed outlives scores that come in, a comment, and a change that the desk refused.
     const bool isSame = edited_ && edited_->code == id && edited_->criterion == name && edited_->marks == marks &&
@@ -493,7 +493,53 @@ void SheetPanel::showEditor() {
         reason_->setText(QString::fromStdString(edited_->said->reason));
     }
     withdraw_->setVisible(edited_->said.has_value());
+    filled_ = typed();
+    if (desk_ != nullptr)
+        if (const auto& all = waiting(id).criteria; all.contains(name)) put(all.at(name));
     showWhetherReady();
+}
+
+SheetPanel::Typed SheetPanel::typed() const {
+    return {band_->currentData().toString(), points_->value(), critical_->currentIndex(), cannotTell_->isChecked(),
+            reason_->text()};
+}
+
+void SheetPanel::put(const Typed& typed) {
+    band_->setCurrentIndex(std::max(0, band_->findData(typed.band)));
+    points_->setValue(typed.points);
+    critical_->setCurrentIndex(typed.critical);
+    cannotTell_->setChecked(typed.cannotTell);
+    reason_->setText(typed.reason);
+}
+
+SheetPanel::TypedOfWork& SheetPanel::waiting(const std::string& code) {
+    return waiting_[deskName_ + '\n' + code];
+}
+
+/// What is half typed, before the fields are filled for `next`.
+void SheetPanel::keepTyped(const Edited& next) {
+    if (!edited_ || edited_->code.empty()) return;
+    TypedOfWork& of = waiting(edited_->code);
+    if (edited_->code == next.code && edited_->marks != next.marks) of.criteria.clear();  // marks that are in
+    const bool isOver = edited_->code == next.code && edited_->criterion == next.criterion &&
+                        (edited_->mark != next.mark || edited_->said != next.said || edited_->marks != next.marks);
+    const bool isLeft = edited_->code != next.code || edited_->criterion != next.criterion;
+    if (isOver || (isLeft && typed() == filled_))
+        of.criteria.erase(edited_->criterion);  // it was said, or nothing is typed
+    else if (isLeft)
+        of.criteria[edited_->criterion] = typed();
+    if (edited_->code == next.code && edited_->decision != next.decision) of.decision.reset();
+    if (edited_->code == next.code) return;
+    const std::pair was = decisionFields(edited_->decision), is(decision_->currentIndex(), decisionReason_->text());
+    of.decision = is == was ? std::nullopt : std::optional(is);
+}
+
+void SheetPanel::showDecision(const std::string& code, const std::optional<marking::Decision>& said) {
+    const auto typed = desk_ != nullptr ? waiting(code).decision : std::nullopt;
+    const auto [index, reason] = typed ? *typed : decisionFields(said);
+    const QSignalBlocker quiet(decision_);
+    decision_->setCurrentIndex(index);
+    decisionReason_->setText(reason);
 }
 
 void SheetPanel::showWhetherReady() {

@@ -3,9 +3,12 @@
 /// @file
 /// One work on the marking desk, beside its picture: criteria, one's own marks or overrides, comments.
 
+#include <QString>
 #include <QWidget>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "handpiece/app/marking/desk.h"
 
@@ -68,6 +71,24 @@ class SheetPanel : public QWidget {
         std::optional<marking::Override> said;
         std::optional<marking::Decision> decision;
     };
+    /// What stands in the fields and was not said: it waits while another criterion or work is looked at.
+    struct Typed {
+        QString band;
+        double points = -1.0;
+        int critical = 0;
+        bool cannotTell = false;
+        QString reason;
+        friend bool operator==(const Typed&, const Typed&) = default;
+    };
+    struct TypedOfWork {
+        std::map<std::string, Typed> criteria;
+        std::optional<std::pair<int, QString>> decision;
+        QString comment;
+    };
+    [[nodiscard]] Typed typed() const;
+    void put(const Typed& typed);
+    /// Of this desk's work.
+    [[nodiscard]] TypedOfWork& waiting(const std::string& code);
     [[nodiscard]] bool isMarking() const;  ///< blind, and one's own mark is not in
     void fillCriteria();
     void fitNames();
@@ -76,12 +97,17 @@ class SheetPanel : public QWidget {
     void showSummary();
     [[nodiscard]] QString stillToMark() const;
     void showEditor();
+    void keepTyped(const Edited& next);
+    void showDecision(const std::string& code, const std::optional<marking::Decision>& said);
     void showWhetherReady();
     void say();
 
     const marking::Desk* desk_ = nullptr;
     QString code_;
     std::optional<Edited> edited_;
+    Typed filled_;                                ///< what the fields were filled with
+    std::map<std::string, TypedOfWork> waiting_;  ///< by desk and code
+    std::string deskName_;
     bool isShown_ = false;
     QLabel *title_, *summary_, *notShown_;
     QToolButton *previous_, *next_;

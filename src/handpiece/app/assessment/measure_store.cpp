@@ -152,6 +152,19 @@ std::optional<MeasuredWork> decodeMeasures(std::string_view text, const StoreKey
     }
 }
 
+const Measured* findMeasured(const MeasuredWork& in, const std::string& kind, const measures::Selection& of) {
+    const auto at = std::find_if(in.measured.begin(), in.measured.end(),
+                                 [&](const Measured& m) { return m.kind == kind && m.of == of; });
+    return at == in.measured.end() ? nullptr : &*at;
+}
+
+bool takeMissing(MeasuredWork& to, const MeasuredWork& from) {
+    if (to.identity.stateHash != from.identity.stateHash) return false;
+    for (const Measured& m : from.measured)
+        if (findMeasured(to, m.kind, m.of) == nullptr) to.measured.push_back(m);
+    return true;
+}
+
 MeasureStore MeasureStore::usual() {
     const fs::path user = field::userCacheFolder();
     return MeasureStore(user.empty() ? user : user / "measures");
@@ -183,26 +196,9 @@ void MeasureStore::keep(const StoreKey& key, const MeasuredWork& work) const {
 }
 
 void MeasureStore::add(const StoreKey& key, MeasuredWork work) const {
-    const std::optional<MeasuredWork> kept = find(key);
-    if (kept && kept->identity.stateHash == work.identity.stateHash && kept->identity.proven == work.identity.proven)
-        for (const Measured& m : kept->measured)
-            if (std::none_of(work.measured.begin(), work.measured.end(),
-                             [&](const Measured& has) { return has.kind == m.kind && has.of == m.of; }))
-                work.measured.push_back(m);
+    if (const std::optional<MeasuredWork> kept = find(key); kept && kept->identity.proven == work.identity.proven)
+        takeMissing(work, *kept);
     keep(key, work);
-}
-
-Work readProvenOnce(const fs::path& path, const tasks::Task& task, const StoreKey& key, const MeasureStore& store,
-                    const core::Progress& progress) {
-    const std::optional<MeasuredWork> kept = store.find(key);
-    if (!kept || !kept->identity.proven) return readWork(path, task, true, progress);
-    Work work = readWork(path, task, false, core::part(progress, 0.0, 0.3));
-    if (rubric::hashText(tooth::stateHash(work.state)) != kept->identity.stateHash ||
-        work.sessionHashes != kept->identity.sessionHashes)
-        return readWork(path, task, true, core::part(progress, 0.3, 1.0));
-    work.isProven = true;
-    work.proof = kept->proof;
-    return work;
 }
 
 }  // namespace handpiece::assessment

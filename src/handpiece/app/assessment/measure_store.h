@@ -22,6 +22,13 @@ struct StoreKey {
 [[nodiscard]] std::string encodeMeasures(const StoreKey& key, const MeasuredWork& work);
 [[nodiscard]] std::optional<MeasuredWork> decodeMeasures(std::string_view text, const StoreKey& key);
 
+/// What was measured of `from` and is not in `to`, taken into it; its own identity stays. False, and nothing done: they
+/// are of different teeth.
+bool takeMissing(MeasuredWork& to, const MeasuredWork& from);
+/// Null: it was not measured.
+[[nodiscard]] const measures::Measured* findMeasured(const MeasuredWork& in, const std::string& kind,
+                                                     const measures::Selection& of);
+
 /// One small file a piece of work, in a folder of the user's own: what somebody else wrote is not believed. Any thread.
 class MeasureStore {
   public:

@@ -22,7 +22,6 @@ namespace handpiece::assessment {
 namespace {
 
 namespace fs = std::filesystem;
-using measures::Measured;
 using measures::Request;
 
 /// Stands for the hash of an exercise that a piece of work is not held against.
@@ -56,12 +55,6 @@ tasks::Task ownTask(const fs::path& work) {
     return task;
 }
 
-const Measured* find(const MeasuredWork& in, const Request& request) {
-    const auto at = std::find_if(in.measured.begin(), in.measured.end(),
-                                 [&](const Measured& m) { return m.kind == request.kind && m.of == request.of; });
-    return at == in.measured.end() ? nullptr : &*at;
-}
-
 /// Measures what is asked and not in the store.
 MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task>& task, const std::string& exercise,
                            std::span<const Request> asked, const MeasureStore& store, const core::Progress& progress,
@@ -76,7 +69,7 @@ MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task
     std::optional<MeasuredWork> kept = store.find(key);
     std::vector<Request> missing;
     for (const Request& request : asked)
-        if (!kept || find(*kept, request) == nullptr) missing.push_back(request);
+        if (!kept || findMeasured(*kept, request.kind, request.of) == nullptr) missing.push_back(request);
     isKept = kept && missing.empty();
     if (isKept) return std::move(*kept);
 
@@ -86,8 +79,7 @@ MeasuredWork measureOrFind(const fs::path& work, const std::optional<tasks::Task
     if (kept) {
         // Its proof is kept; that it is the same tooth shows that it is the same work.
         const MeasuredWork more = measureWork(readWork(work, against, false, reading), against, missing, measuring);
-        if (more.identity.stateHash == kept->identity.stateHash) {
-            kept->measured.insert(kept->measured.end(), more.measured.begin(), more.measured.end());
+        if (takeMissing(*kept, more)) {
             store.keep(key, *kept);
             return std::move(*kept);
         }

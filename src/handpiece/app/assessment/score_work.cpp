@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "handpiece/app/assessment/measure_store.h"
 #include "handpiece/app/scan_work/scan_work.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/tissue_export.h"
@@ -332,19 +333,32 @@ Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const c
                       "name session.h5, a folder of sessions, an attempt's folder or a .handpiece file");
 }
 
-std::shared_ptr<const std::vector<std::byte>> provenWork(const fs::path& session, const tasks::Task& task,
-                                                         const core::Progress& progress) {
+ProvenWork provenWork(const fs::path& session, const tasks::Task& task, const core::Progress& progress) {
     std::error_code ec;
     if (session.extension() != ".h5" || fs::is_directory(session, ec))
         throw core::Error("this is no session", session.string(),
                           "name a session.h5: one recording, from its beginning")
             .as("work-no-session");
-    const Work work = readWork(session, task, true, progress);
+    Work work = readWork(session, task, true, progress);
     if (!work.isProven)
         throw core::Error("this work is not proven: " + work.proof, session.string(),
                           "record one from the whole tooth to its end, with this program")
             .as("work-not-proven");
-    return std::make_shared<const std::vector<std::byte>>(core::readFile(session, tasks::kMaxTeacherWorkBytes));
+    return {std::make_shared<const std::vector<std::byte>>(core::readFile(session, tasks::kMaxTeacherWorkBytes)),
+            std::move(work)};
+}
+
+Work readProvenOnce(const fs::path& path, const tasks::Task& task, const StoreKey& key, const MeasureStore& store,
+                    const core::Progress& progress) {
+    const std::optional<MeasuredWork> kept = store.find(key);
+    if (!kept || !kept->identity.proven) return readWork(path, task, true, progress);
+    Work work = readWork(path, task, false, core::part(progress, 0.0, 0.3));
+    if (rubric::hashText(tooth::stateHash(work.state)) != kept->identity.stateHash ||
+        work.sessionHashes != kept->identity.sessionHashes)
+        return readWork(path, task, true, core::part(progress, 0.3, 1.0));
+    work.isProven = true;
+    work.proof = kept->proof;
+    return work;
 }
 
 Work readChain(std::span<const ChainLink> chain, const tasks::Task& task, bool prove, const core::Progress& progress) {

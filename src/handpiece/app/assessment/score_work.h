@@ -45,11 +45,15 @@ struct Work {
 [[nodiscard]] Work readWork(const std::filesystem::path& path, const tasks::Task& task, bool prove = true,
                             const core::Progress& progress = {});
 
-/// A teacher's own work on an exercise (one session, .h5), as its file may carry it. Throws core::Error: no session, of
-/// another tooth or voxel, not proven, too large.
-[[nodiscard]] std::shared_ptr<const std::vector<std::byte>> provenWork(const std::filesystem::path& session,
-                                                                       const tasks::Task& task,
-                                                                       const core::Progress& progress = {});
+/// A teacher's own work on an exercise (one session, .h5), as its file may carry it. Nothing in a session says of which
+/// exercise it is: who takes it may hold `work` against the task. Throws core::Error: no session, of another tooth or
+/// voxel, not proven, too large.
+struct ProvenWork {
+    std::shared_ptr<const std::vector<std::byte>> file;
+    Work work;
+};
+[[nodiscard]] ProvenWork provenWork(const std::filesystem::path& session, const tasks::Task& task,
+                                    const core::Progress& progress = {});
 
 /// A session of a chain that is known, whatever happened to its file.
 struct ChainLink {

@@ -8,11 +8,11 @@
 #include <memory>
 #include <utility>
 
+#include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/section_outlines.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/brick_index.h"
 #include "handpiece/senses/view/renderer.h"
@@ -29,13 +29,6 @@ constexpr double kFacePixelMm = 0.03;
 constexpr double kEyeMm = 20.0;
 /// Of the tooth under the preparation is seen so much: the rest is roots.
 constexpr double kUnderMm = 6.0;
-
-Png pngOf(const view::Image& image) {
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "picture.png";
-    view::writePng(image, file);
-    return core::readFile(file);
-}
 
 /// Signed distance from a place to the ideal tooth [mm], negative in it: positive on one's own surface is tissue that
 /// should be gone, negative tissue that should be there.
@@ -75,7 +68,7 @@ class Painter {
         constexpr int kMaxDrawings = 6;  // until it no longer gets finer
         for (int i = 0; i < kMaxDrawings; ++i)
             if (!renderer_.draw(camera, viewport_, look_, moment_, image).refining) break;
-        return pngOf(image);
+        return pagePng(image);
     }
     [[nodiscard]] Png section(StandardView from, const view::Plane& plane) {
         const measure::Section s = live_.withProbe([&](const measure::ToothProbe& probe) {

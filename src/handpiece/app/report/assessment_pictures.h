@@ -10,7 +10,7 @@
 namespace handpiece::report {
 
 struct PictureSettings {
-    int width = 480, height = 400;
+    int width = 360, height = 300;
 };
 
 /// `own`: what was cut of `teeth`, by their numbers in the task's case. Ideal and deviation only of a task with a

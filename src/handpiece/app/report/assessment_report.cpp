@@ -59,23 +59,26 @@ std::string wantedOf(const rubric::Criterion& c, const rubric::Rubric& rubric) {
 class Page {
   public:
     Page(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-         const AssessmentPictures& pictures)
+         const AssessmentPictures& pictures, const ReviewMaker& review)
         : result_(result),
           a_(result.assessment),
           task_(task),
           rubric_(rubric),
           pictures_(pictures),
+          review_(review),
           page_(words()("assessment.title", titleOf(task))) {}
 
     std::string text() {
         addVerdict();
         addScan();
         addCritical();
+        page_.reviewHere();
         addFirstErrors();
         addCriteria();
         addViews();
         addRules();
         addOrigin();
+        if (review_) page_.review(review_(page_.roomForReview()));
         return page_.text();
     }
 
@@ -321,6 +324,7 @@ class Page {
     const tasks::Task& task_;
     const rubric::Rubric& rubric_;
     const AssessmentPictures& pictures_;
+    const ReviewMaker& review_;
     HtmlReport page_;
 };
 
@@ -355,8 +359,8 @@ std::string undoneWords(const score::Assessment& a) {
 }
 
 std::string studentReport(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
-                          const AssessmentPictures& pictures) {
-    return Page(result, task, rubric, pictures).text();
+                          const AssessmentPictures& pictures, const ReviewMaker& review) {
+    return Page(result, task, rubric, pictures, review).text();
 }
 
 }  // namespace handpiece::report

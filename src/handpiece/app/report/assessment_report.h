@@ -4,6 +4,7 @@
 /// A score as a page to read and to print: for the student who made the preparation, and for a class.
 
 #include <cstddef>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -13,6 +14,8 @@
 #include "handpiece/assess/task/task.h"
 
 namespace handpiece::report {
+
+struct Review;
 
 using Png = std::vector<std::byte>;
 
@@ -46,10 +49,14 @@ inline constexpr std::size_t kFirstErrors = 3;
 /// words.
 [[nodiscard]] std::string drillFor(const std::string& measure);
 
+using ReviewMaker = std::function<Review(std::size_t mostBytes)>;
+
 /// One HTML page in the program's language, nothing loaded from elsewhere: score with its uncertainty, verdict and
-/// why, critical errors, the costliest errors with place, time, force, picture and drill, all criteria, own and ideal.
+/// why, critical errors, the costliest errors with place, time, force, picture and drill, all criteria, own and ideal;
+/// with a `review` the work to look through, in so many bytes at most.
 [[nodiscard]] std::string studentReport(const score::Result& result, const tasks::Task& task,
-                                        const rubric::Rubric& rubric, const AssessmentPictures& pictures = {});
+                                        const rubric::Rubric& rubric, const AssessmentPictures& pictures = {},
+                                        const ReviewMaker& review = {});
 
 /// One result of a class: what a result.json holds of it.
 struct ClassEntry {

@@ -5,19 +5,25 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
+#include <cstring>
 
 #include "handpiece/app/report/plot.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
 
 namespace handpiece::report {
+
+/// apps/web/viewer as one script, its SHA-256, and its style.
+extern const char *const kViewerScript, *const kViewerSha256, *const kViewerStyle;
+
 namespace {
 
 constexpr std::string_view kPageStyle = R"(
 :root { color-scheme: light dark; }
 @page { size: A4; margin: 14mm; }
 body { max-width: 900px; margin: 2.2rem auto; padding: 0 1.2rem; color: #1c2430; background: #ffffff;
-  font: 15px/1.5 "Helvetica Neue", Arial, "Noto Sans CJK JP", "IPAGothic", sans-serif; }
+  font: 15px/1.5 "Helvetica Neue", Arial, "Liberation Sans", "DejaVu Sans", "Noto Sans CJK JP", "IPAGothic", sans-serif; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 0.3rem; }
 h2 { font-size: 1.25rem; margin: 2rem 0 0.5rem; padding-bottom: 0.2rem; border-bottom: 1px solid #c9ced6; }
 h3 { font-size: 1.02rem; margin: 1.4rem 0 0.3rem; }
@@ -36,6 +42,7 @@ td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
 .thirds { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
 .slices img { max-height: 90mm; object-fit: contain; background: #000; }
 .frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
+label { display: inline-block; min-width: 8rem; } input, button { font: inherit; padding: 0.3rem 0.6rem; } a { color: #0b62a4; }
 figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }
 figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.3rem; }
@@ -44,14 +51,14 @@ code { font: 0.85rem/1.5 "DejaVu Sans Mono", Menlo, monospace; } pre { backgroun
 @media (prefers-color-scheme: dark) {
 body { color: #dfe4ec; background: #14181f; } h2 { border-color: #3a4250; } td { border-color: #2a313c; }
 tbody tr:hover { background: #1d232d; } .note, caption, figcaption { color: #9aa5b4; } .frame { background: #182230; } pre { background: #1d232d; }
-td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
+a { color: #6cb6ff; } td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
 @media print { body { font-size: 10.5pt; margin: 0; padding: 0; max-width: none; } h2 { break-after: avoid; }
 figure, tr, .frame { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
 )";
 
-std::string dataAddress(std::span<const std::byte> bytes) {
+std::string base64(std::span<const std::byte> bytes) {
     static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    std::string out = "data:image/png;base64,";
+    std::string out;
     out.reserve(out.size() + (bytes.size() + 2) / 3 * 4);
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         const std::size_t left = std::min<std::size_t>(bytes.size() - i, 3);
@@ -62,6 +69,27 @@ std::string dataAddress(std::span<const std::byte> bytes) {
             out += k <= left ? kLetters[three >> (18 - 6 * k) & 63] : '=';
     }
     return out;
+}
+
+std::string dataAddress(std::span<const std::byte> png) {
+    return "data:image/png;base64," + base64(png);
+}
+
+/// Of the viewer's script, which was counted out when the program was built.
+std::string scriptHash() {
+    std::vector<std::byte> bytes;
+    for (std::string_view hex = kViewerSha256; hex.size() >= 2; hex.remove_prefix(2)) {
+        unsigned value = 0;
+        std::from_chars(hex.data(), hex.data() + 2, value, 16);
+        bytes.push_back(static_cast<std::byte>(value));
+    }
+    return base64(bytes);
+}
+
+/// As the viewer's clock.
+std::string clockText(double timeS) {
+    const auto tenths = static_cast<long>(timeS * 10.0 + 0.5);
+    return fmt::format("{}:{:04.1f}", tenths / 600, static_cast<double>(tenths % 600) / 10.0);
 }
 
 bool isNumber(std::string_view cell) {
@@ -142,6 +170,42 @@ void HtmlReport::table(const std::vector<std::string>& header, const std::vector
     body_ += "</tbody></table></div>\n";
 }
 
+void HtmlReport::linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
+                             std::string_view caption) {
+    body_ += "<div class=\"scroll\"><table>";
+    if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
+    body_ += "<thead><tr>";
+    for (const std::string& head : header)
+        body_ += fmt::format("<th scope=\"col\">{}</th>", escaped(head));
+    body_ += "</tr></thead><tbody>\n";
+    for (const std::vector<Cell>& row : rows) {
+        body_ += "<tr>";
+        for (const Cell& cell : row)
+            body_ += cell.address.empty()
+                         ? fmt::format("<td>{}</td>", escaped(cell.text))
+                         : fmt::format("<td><a href=\"{}\">{}</a></td>", escaped(cell.address), escaped(cell.text));
+        body_ += "</tr>\n";
+    }
+    body_ += "</tbody></table></div>\n";
+}
+
+void HtmlReport::form(std::string_view address, const std::vector<Field>& fields, std::string_view button) {
+    hasForm_ = true;
+    body_ += fmt::format("<form method=\"post\" action=\"{}\">\n", escaped(address));
+    for (const Field& f : fields) {
+        if (f.kind == "hidden")
+            body_ +=
+                fmt::format("<input type=\"hidden\" name=\"{}\" value=\"{}\">\n", escaped(f.name), escaped(f.value));
+        else
+            body_ += fmt::format(
+                "<p><label for=\"{0}\">{1}</label> <input id=\"{0}\" name=\"{0}\" type=\"{2}\" value=\"{3}\" "
+                "autocomplete=\"{4}\"></p>\n",
+                escaped(f.name), escaped(f.label), escaped(f.kind), escaped(f.value),
+                f.kind == "password" ? "current-password" : "username");
+    }
+    body_ += fmt::format("<p><button type=\"submit\">{}</button></p>\n</form>\n", escaped(button));
+}
+
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
     std::vector<std::vector<std::string>> cells;
     for (const auto& [what, value] : rows)
@@ -169,6 +233,39 @@ void HtmlReport::picture(const view::Image& image, std::string_view caption) {
     picture(file, caption);
 }
 
+std::size_t HtmlReport::roomForReview() const {
+    // A third goes on letters; words, moments and curves' names have a part of their own.
+    constexpr std::size_t kText = 120'000;
+    const std::size_t taken = body_.size() + std::strlen(kViewerScript) + std::strlen(kViewerStyle) + kText;
+    return (kMostPageBytes - std::min(kMostPageBytes, taken)) / 4 * 3;
+}
+
+void HtmlReport::review(const Review& review) {
+    const auto words = [](const char* id) { return escaped(config::words()(id)); };
+    std::string all;
+    if (review.data.empty()) {
+        all = fmt::format("<p class=\"missing\">{}</p>\n", words("review.too-large"));
+    } else {
+        hasViewer_ = true;
+        all = fmt::format(
+            "<section class=\"review\" id=\"review\" data-failed=\"{}\"><p>{}</p></section>\n"
+            "<script type=\"application/json\" id=\"review-text\">{}</script>\n"
+            "<script type=\"application/octet-stream\" id=\"review-data\">{}</script>\n",
+            words("review.failed"), words("review.needs-script"), review.json, base64(review.data));
+    }
+    if (!review.pictures.empty()) {
+        all += fmt::format("<section id=\"review-pictures\"><h3>{}</h3><div class=\"slices\">\n",
+                           words("review.pictures"));
+        for (const Review::Picture& picture : review.pictures)
+            all += fmt::format(
+                "<figure data-time=\"{0:.3f}\"><img alt=\"{1}\" src=\"{2}\"><figcaption>{1}</figcaption></figure>\n",
+                picture.timeS, escaped(config::words()("review.picture-at", clockText(picture.timeS))),
+                dataAddress(picture.png));
+        all += "</div></section>\n";
+    }
+    body_.insert(reviewAt_.value_or(body_.size()), all);
+}
+
 void HtmlReport::begin(Group group) {
     constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds"};
     body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
@@ -179,11 +276,17 @@ void HtmlReport::end() {
 }
 
 std::string HtmlReport::text() const {
+    const std::string policy =
+        fmt::format("default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action '{}'",
+                    hasForm_ ? "self" : "none") +
+        (hasViewer_ ? fmt::format("; script-src 'sha256-{}'", scriptHash()) : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
-        "<style>{}{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        config::words().language(), escaped(title_), kPageStyle, svgStyle(), body_);
+        "<style>{}{}{}</style>\n</head>\n<body>\n{}{}</body>\n</html>\n",
+        config::words().language(), policy, escaped(title_), kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
+        body_, hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string());
 }
 
 }  // namespace handpiece::report

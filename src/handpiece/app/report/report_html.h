@@ -2,18 +2,21 @@
 #pragma once
 /// @file
 /// One self-contained HTML page, to read and to print: headings, text, tables, pictures. Nothing is loaded from
-/// elsewhere. Every page of the program is made with it, in the program's language.
+/// elsewhere, and no browser lets it: its content security policy names what may run. Every page of the program is made
+/// with it, in the program's language.
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "handpiece/app/report/review.h"
 #include "handpiece/senses/view/image.h"
 
 namespace handpiece::report {
@@ -26,6 +29,15 @@ class HtmlReport {
     struct Chip {
         std::array<std::uint8_t, 3> colour;
         std::string name;
+    };
+
+    /// A cell that may lead somewhere.
+    struct Cell {
+        std::string text, address{};
+    };
+    /// What a person fills in; `kind` as HTML has it: "text", "password", "hidden".
+    struct Field {
+        std::string name, label, kind = "text", value{};
     };
 
     /// All text is escaped.
@@ -41,6 +53,11 @@ class HtmlReport {
     /// Cells "yes" and "no" are coloured.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                std::string_view caption = {});
+    /// As table(), cells as they are.
+    void linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
+                     std::string_view caption = {});
+    /// Sent to `address` by its one button.
+    void form(std::string_view address, const std::vector<Field>& fields, std::string_view button);
     /// What, and how much.
     void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.
@@ -50,6 +67,12 @@ class HtmlReport {
     void picture(const view::Image& image, std::string_view caption);
     /// The bytes of a PNG file.
     void picture(std::span<const std::byte> png, std::string_view caption);
+    /// Where review() puts it; what is in the page by then is counted by roomForReview(). Without a call, at the end.
+    void reviewHere() { reviewAt_ = body_.size(); }
+    /// Bytes that a review may have, so that the page stays under kMostPageBytes.
+    [[nodiscard]] std::size_t roomForReview() const;
+    /// The viewer (apps/web/viewer) and what it shows. Once a page.
+    void review(const Review& review);
     void begin(Group group);
     void end();
     /// The page.
@@ -57,6 +80,8 @@ class HtmlReport {
 
   private:
     std::string title_, body_;
+    std::optional<std::size_t> reviewAt_;
+    bool hasViewer_ = false, hasForm_ = false;
 };
 
 }  // namespace handpiece::report

@@ -8,18 +8,18 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "handpiece/app/report/artist.h"
+#include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/plot.h"
 #include "handpiece/app/report/report_figures.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/senses/view/renderer.h"
 
 namespace handpiece::report {
 namespace {
-
-constexpr double kSectionPixelMm = 0.03;
 
 using Tone = HtmlReport::Tone;
 using Group = HtmlReport::Group;
@@ -53,85 +53,29 @@ Deepest deepestOf(const std::vector<surface::BrickUpdate>& updates) {
     return deepest;
 }
 
-class Artist {
-  public:
-    Artist(const simulation::SessionPlayer& player, const ReportSettings& settings)
-        : bounds_(player.station().tooth->outer.bounds()),
-          buccal_(player.toothCase().buccalSign),
-          viewport_{settings.pictureWidth, settings.pictureHeight} {
-        renderer_.setTooth(bounds_);
-        renderer_.updateBricks(player.tooth()->uncutSurface(), true);
-        look_.quality = view::Quality::fine;
-        look_.palette = view::Palette::textbook;
-        look_.bur = look_.turbine = look_.debris = look_.spray = false;
-        look_.scaleBar = true;
-        look_.backgroundTop = look_.backgroundBottom = {236, 239, 243};
-        moment_.burShown = false;
-    }
-    void cut(const std::vector<surface::BrickUpdate>& news) { renderer_.updateBricks(news); }
-    [[nodiscard]] view::Image picture(view::StandardView from, view::ToothShown shown) {
-        look_.tooth = shown;
-        return drawn(view::standardView(from, bounds_, buccal_, viewport_));
-    }
-    [[nodiscard]] view::Image section(const simulation::LiveTooth& tooth, const core::Vec3& atMm) {
-        const core::Vec3 normal = core::Vec3::UnitX();
-        const double offset = normal.dot(atMm);
-        const measure::Section s = tooth.withProbe(
-            [&](const measure::ToothProbe& probe) { return probe.section(normal, offset, kSectionPixelMm); });
-        view::SectionFace face;
-        face.plane = {normal, offset};
-        face.originMm = s.originMm;
-        face.uAxis = s.uAxis;
-        face.vAxis = s.vAxis;
-        face.mmPerPixel = s.mmPerPixel;
-        face.width = s.width;
-        face.height = s.height;
-        face.tissue = s.tissue;
-        renderer_.setSectionFace(std::move(face));
-        look_.tooth = view::ToothShown::now;
-        look_.cutAway = view::Plane{normal, offset};
-        look_.sectionGrid = true;
-        view::Image image = drawn(view::standardView(view::StandardView::mesial, bounds_, buccal_, viewport_));
-        look_.cutAway.reset();
-        return image;
-    }
-
-  private:
-    view::Image drawn(const view::Camera& camera) {
-        view::Image image;
-        for (int i = 0; i < 8 && (renderer_.draw(camera, viewport_, look_, moment_, image).refining || i == 0); ++i) {
-        }
-        return image;
-    }
-    view::Renderer renderer_;
-    core::Box bounds_;
-    int buccal_;
-    view::Viewport viewport_;
-    view::Look look_;
-    view::Moment moment_;
-};
-
 void addPictures(HtmlReport& page, const simulation::SessionPlayer& player, const ReportSettings& settings,
                  const std::vector<surface::BrickUpdate>& news, const Deepest& deepest) {
     if (!settings.pictures) return page.paragraph(words()("report.no-pictures-asked"), Tone::missing);
     using view::StandardView, view::ToothShown;
-    std::vector<std::pair<view::Image, std::string>> pictures;
+    std::vector<std::pair<std::vector<std::byte>, std::string>> pictures;
     try {
-        Artist artist(player, settings);
-        pictures.emplace_back(artist.picture(StandardView::occlusal, ToothShown::before),
+        Artist artist(player, {settings.pictureWidth, settings.pictureHeight});
+        pictures.emplace_back(pagePng(artist.picture(StandardView::occlusal, ToothShown::before)),
                               words()("session.occlusal-before"));
         artist.cut(news);
-        pictures.emplace_back(artist.picture(StandardView::occlusal, ToothShown::now),
+        pictures.emplace_back(pagePng(artist.picture(StandardView::occlusal, ToothShown::now)),
                               words()("session.occlusal-after"));
-        pictures.emplace_back(artist.picture(StandardView::buccal, ToothShown::now), words()("session.buccal-after"));
+        pictures.emplace_back(pagePng(artist.picture(StandardView::buccal, ToothShown::now)),
+                              words()("session.buccal-after"));
         if (deepest.depthMm > 0.0)
-            pictures.emplace_back(artist.section(*player.tooth(), deepest.pointMm), words()("session.section"));
+            pictures.emplace_back(pagePng(artist.section(*player.tooth(), deepest.pointMm)),
+                                  words()("session.section"));
     } catch (const core::Error& e) {
         return page.paragraph(words()("report.no-pictures", e.problem()), Tone::missing);
     }
     page.begin(Group::pictures);
-    for (const auto& [image, caption] : pictures)
-        page.picture(image, caption);
+    for (const auto& [png, caption] : pictures)
+        page.picture(std::span(png), caption);
     page.end();
     page.legend(chipsOf(player.station().tooth->tissues.tissues()));
 }
@@ -251,7 +195,10 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
                           const core::Progress& progress) {
     const session::SessionInfo& info = player.reader().info();
     const simulation::SimulationSettings first = simulation::settingsFromJson(info.settings, "session");
-    const simulation::Verdict verdict = player.compareAll(core::part(progress, 0.0, 0.7));
+    ReviewGatherer gatherer(settings.pictures ? kReviewPictures : 0, settings.against.task);
+    gatherer.follow(player);
+    const simulation::Verdict verdict =
+        player.compareAll(core::part(progress, 0.0, 0.7), {ReviewGatherer::stepS(), [&gatherer] { gatherer.look(); }});
     const SessionFigures f = figuresOf(player.reader());
     core::report(progress, 0.75);
     const std::vector<simulation::PlotPoint> points =
@@ -259,17 +206,21 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
     simulation::LiveTooth& live = *player.tooth();
     live.wantRemovedDepths(true);
     live.settle();
+    // All of it again: the pictures along the way have had their news.
+    static_cast<void>(live.uncutSurface());
     const std::vector<surface::BrickUpdate> news = live.takeNews();
     const Deepest deepest = deepestOf(news);
     const auto thinnest = live.withProbe([](const measure::ToothProbe& probe) { return probe.thinnestOverPulp(); });
     core::report(progress, 0.85);
 
     const double removed = std::accumulate(f.removedMm3.begin(), f.removedMm3.end(), 0.0);
-    HtmlReport page(words()("session.title", player.toothCase().name));
+    const std::string title = words()("session.title", player.toothCase().name);
+    HtmlReport page(title);
     page.paragraph(
         words()("session.recorded", info.code.empty() ? words()("session.no-code") : words()("session.code", info.code),
                 info.version, info.rateHz),
         Tone::note);
+    page.reviewHere();
     page.heading(words()("report.the-tooth"));
     addPictures(page, player, settings, news, deepest);
     addVolumes(page, player, f);
@@ -331,6 +282,8 @@ std::string sessionReport(simulation::SessionPlayer& player, const ReportSetting
     page.paragraph(words()("session.state", told, verdict.hash), verdict.matches           ? Tone::good
                                                                  : verdict.isOtherEngine() ? Tone::note
                                                                                            : Tone::bad);
+    if (!verdict.matches) gatherer.note(told);
+    page.review(gatherer.review(title, settings.against, page.roomForReview()));
     core::report(progress, 1.0);
     return page.text();
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "handpiece/app/report/report_html.h"
+#include "handpiece/app/report/review.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/base/core/progress.h"
 
@@ -14,6 +15,7 @@ namespace handpiece::report {
 struct ReportSettings {
     bool pictures = true;  ///< false, or without OpenGL: the page says so in their place
     int pictureWidth = 640, pictureHeight = 480;
+    ReviewedAgainst against{};  ///< the work's exercise and score: shown in the viewer
 };
 
 /// In the program's language.

@@ -171,6 +171,8 @@ struct SessionPlayer::State {
     bool isExact = true, isRunningUp = false;
     std::uint64_t differs = 0, firstDiffering = 0, skippedSteps = 0, brokenSeams = 0;
     messages::HapticSample sample;
+    Watch watch;
+    double nextLookS = 0.0;
 
     [[nodiscard]] double timeOf(std::uint64_t tick) const { return static_cast<double>(tick) / first.rateHz; }
     [[nodiscard]] bool isAtEnd() const { return next >= reader.size(); }
@@ -330,6 +332,10 @@ struct SessionPlayer::State {
             }
             if (record().tick > lastOfAll) break;
             playOne();
+            if (watch.look && (sample.timeS >= nextLookS || isAtEnd())) {
+                nextLookS = std::max(nextLookS, sample.timeS) + watch.stepS;
+                watch.look();
+            }
             if ((next - from) % kReportEvery == 0)
                 core::report(progress, std::min(1.0, static_cast<double>(next - from) / most));
         }
@@ -591,8 +597,14 @@ std::uint64_t SessionPlayer::skippedSteps() const noexcept {
     return state_->skippedSteps;
 }
 
-Verdict SessionPlayer::compareAll(const core::Progress& progress) {
+Verdict SessionPlayer::compareAll(const core::Progress& progress, const Watch& watch) {
     State& s = *state_;
+    struct Watching {
+        State& of;
+        ~Watching() { of.watch = {}; }
+    } watching{s};
+    s.watch = watch;
+    s.nextLookS = 0.0;
     const auto told = s.told();
     Verdict verdict;
     verdict.complete = s.reader.isComplete();

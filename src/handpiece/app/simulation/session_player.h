@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -30,6 +31,11 @@ struct Verdict {
     std::uint64_t ticks = 0, differingTicks = 0, firstDifferingTick = 0;
     /// Where the session goes on after a pause or a crash, and how often the tooth there is not what was done before.
     std::uint64_t seams = 0, brokenSeams = 0;
+};
+/// Who looks at the player along the way: at its first tick, at the first tick of every further `stepS`, at its last.
+struct Watch {
+    double stepS = 0.0;
+    std::function<void()> look{};  ///< must leave the player where it is; none: nobody looks
 };
 /// From the beginning on it cuts the very tooth that was cut, bit for bit. After a jump, and in a session of another
 /// engine revision, it goes on from the key frame before, with half a second of run-up for rotor and proxy; at each
@@ -90,7 +96,7 @@ class SessionPlayer {
     /// Undo and redo that could not be repeated: after a jump, or in another field.
     [[nodiscard]] std::uint64_t skippedSteps() const noexcept;
     /// From the beginning to the end. Throws core::Error as advance(), and for what cannot be repeated.
-    [[nodiscard]] Verdict compareAll(const core::Progress& progress = {});
+    [[nodiscard]] Verdict compareAll(const core::Progress& progress = {}, const Watch& watch = {});
 
   private:
     struct State;

@@ -110,13 +110,7 @@ class Finder {
     void occlusal(double open) {
         const Cavity& cavity = laid_.cavities.front();
         // What does not move with the numbers.
-        Vec2 anchor = Vec2::Zero();
-        double count = 0.0;
-        for (const cases::Landmark& one : tooth_.landmarks)
-            if (one.kind == cases::LandmarkKind::fissure)
-                for (const Vec3& p : one.pointsMm)
-                    anchor += p.head<2>(), count += 1.0;
-        groove(cavity, anchor / std::max(1.0, count), number("depth_mm"));
+        groove(cavity, laid_.fissureMiddleMm.head<2>(), number("depth_mm"));
         const double way = open == 0.0 ? 1.0 : -open;
         const Vec2* end = nullptr;
         double half = 0.0;
@@ -194,13 +188,7 @@ class Finder {
                 tips.push_back(one.pointsMm.front()), middle += one.pointsMm.front();
         if (tips.empty()) return;
         middle /= static_cast<double>(tips.size());
-        Vec3 fissureMiddle = Vec3::Zero();
-        double fissurePoints = 0.0;
-        for (const cases::Landmark& one : tooth_.landmarks)
-            if (one.kind == cases::LandmarkKind::fissure)
-                for (const Vec3& p : one.pointsMm)
-                    fissureMiddle += p, fissurePoints += 1.0;
-        fissureMiddle /= std::max(1.0, fissurePoints);
+        const double fissureX = laid_.fissureMiddleMm.x();
         bool hasShoulder = false;
         for (std::size_t i = 0; i < preparation::kCapNumbers.size(); ++i) {
             // A premolar's cusp takes both handles, beside each other.
@@ -213,8 +201,7 @@ class Finder {
             const double cap = number(preparation::kCapNumbers[i]);
             // A number counts square to the surface, a handle goes straight down.
             constexpr double kInMm = 0.4;  // into the quarter of the crown that goes with the number
-            const double x =
-                fissureMiddle.x() + out.x() * std::max(kInMm, out.x() * (tip.x() - fissureMiddle.x()) + 0.3);
+            const double x = fissureX + out.x() * std::max(kInMm, out.x() * (tip.x() - fissureX) + 0.3);
             Vec3 place = endUnder(Vec3(x, tip.y(), tip.z() + 10.0));
             // Where a box or the isthmus runs under the tip: beside it, where the target ends as deep as the number.
             constexpr double kStepMm = 0.2, kMostMm = 2.0;

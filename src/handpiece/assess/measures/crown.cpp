@@ -75,7 +75,7 @@ Taken takeReduction(CutTooth& tooth, const Selection& of) {
         const auto [cusp, half] = cuspOf(tooth.preparation().landmarks, of.side);
         if (cusp == nullptr) return none("no side and no cusp of the case is called \"" + of.side + "\"");
         isCusp = true;
-        isPart = [&axes, tip = cusp->pointsMm.front(), half](const Vec3& p, const Vec3& n) {
+        isPart = [&axes, tip = cusp->pointsMm.front(), half = half](const Vec3& p, const Vec3& n) {
             Vec3 off = p - tip;
             off -= off.dot(axes.longAxis) * axes.longAxis;
             return off.norm() < kCuspMm && half * off.dot(axes.mesial) >= 0.0 && n.dot(axes.longAxis) > 0.0;

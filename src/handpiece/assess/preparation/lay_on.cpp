@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "handpiece/assess/preparation/zone_surfaces.h"
 #include "handpiece/base/core/error.h"
@@ -88,6 +89,7 @@ class Site {
         box.min = box.min.cwiseMax(whole.min), box.max = box.max.cwiseMin(whole.max);
         if (box.isEmpty()) fail("the preparation lies outside the tooth", "give other sizes", "lay-outside");
         laid.zones = std::make_shared<zones::Zones>(std::move(target), box, recipe_.leeway, guarded());
+        laid.fissureMiddleMm = fissureMiddleMm_;
         return laid;
     }
 
@@ -204,15 +206,9 @@ class Site {
     /// the signs of their x; 0: none.
     void classOne(double open, double alsoOpen) {
         const double half = 0.5 * number("width_mm"), ridge = number("ridge_mm");
-        double height = 0.0;
-        std::size_t count = 0;
         const auto fissures = need(LandmarkKind::fissure);
-        for (const cases::Landmark* fissure : fissures)
-            for (const Vec3& p : fissure->pointsMm)
-                if (isOnTop(p)) height += p.z(), ++count;
-        if (count == 0)
-            fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)", "lay-fissure-off");
-        const double floor = height / static_cast<double>(count) - number("depth_mm");
+        findFissureMiddle(fissures);
+        const double floor = fissureMiddleMm_.z() - number("depth_mm");
         // At the floor all round; towards the marginal ridges, which get thinner towards their crests, as high as the
         // wall stands.
         const double flare = core::tan(number("wall_deg") * kRadPerDeg);
@@ -257,6 +253,16 @@ class Site {
             fail("there is no room along the fissures", "give a thinner ridge, or a lesser width or depth",
                  "lay-no-room");
         cavities_.push_back({{}, std::move(outline), {Floor::Kind::flat, floor, 0.0}, number("wall_deg") * kRadPerDeg});
+    }
+    void findFissureMiddle(std::span<const cases::Landmark* const> fissures) {
+        Vec3 sum = Vec3::Zero();
+        std::size_t count = 0;
+        for (const cases::Landmark* fissure : fissures)
+            for (const Vec3& p : fissure->pointsMm)
+                if (isOnTop(p)) sum += p, ++count;
+        if (count == 0)
+            fail("no fissure lies on the occlusal surface", "set it in the window (Ctrl+Shift+J)", "lay-fissure-off");
+        fissureMiddleMm_ = sum / static_cast<double>(count);
     }
     /// Fissures run over onto the sides; those are not followed.
     [[nodiscard]] bool isOnTop(const Vec3& p) const {
@@ -513,12 +519,7 @@ class Site {
         if (here > 0.0) box_(recipe_.side, here);
         box = zones::boundsOf(cavities_, kAboveMm);
         const double side = buccal();
-        Vec2 middle = Vec2::Zero();
-        std::size_t count = 0;
-        for (const cases::Landmark* fissure : need(LandmarkKind::fissure))
-            for (const Vec3& p : fissure->pointsMm)
-                if (isOnTop(p)) middle += p.head<2>(), ++count;
-        middle /= static_cast<double>(count);
+        const Vec2 middle = fissureMiddleMm_.head<2>();
         struct Quarter {
             Vec2 out;  ///< signs of x and y
             double capMm, lowMm;
@@ -679,6 +680,7 @@ class Site {
     const Recipe& recipe_;
     std::shared_ptr<const geometry::TriangleTree> tree_;
     std::vector<Cavity> cavities_;
+    Vec3 fissureMiddleMm_ = Vec3::Zero();
 };
 
 }  // namespace

@@ -82,6 +82,8 @@ struct Laid {
     /// Whose union the target is; none for a crown, an onlay, a lesion, recorded work and a painting.
     std::vector<zones::Cavity> cavities;
     core::Vec3 draw = core::Vec3::UnitZ();  ///< path of draw, out of the tooth, unit
+    /// Of the fissures' points on the occlusal surface, where the template follows them.
+    core::Vec3 fissureMiddleMm = core::Vec3::Zero();
 };
 
 /// Throws core::Error: a landmark that is missing (which, and how to set it), a tooth on which there is no room for the

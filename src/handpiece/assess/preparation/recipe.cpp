@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/base/core/error.h"
@@ -192,7 +193,9 @@ Recipe readRecipe(const config::Table& table) {
                 way.size() == 3 ? core::Vec3(way[0], way[1], way[2]) : core::Vec3(core::Vec3::Zero());
             if (!(draw.norm() >= 0.5 && draw.norm() <= 2.0))
                 table.fail("this is no path of draw", "three numbers, of length 1, as in draw = [0, 0, 1]", key);
-            recipe.draw = draw.normalized();
+            // One that is unit already stays to the bit: written and read again it is the same exercise.
+            constexpr double kUnit = 1e-12;
+            recipe.draw = std::abs(draw.squaredNorm() - 1.0) < kUnit ? draw : draw.normalized();
         } else if (*id == kPaintedTemplate && key == "stroke") {
             recipe.strokes = readStrokes(table);
         } else if (*id == kRecordedTemplate && key == "zones_hash") {

@@ -264,7 +264,8 @@ StateDelta decodeState(std::span<const std::byte> data, const Teeth& teeth, cons
         payload = payload.subspan(sizeof others);
         if (others >= kMaxTeeth || payload.size() < others * sizeof(TissueVolumes)) throw damaged();
         state.removedMm3.others.resize(others);
-        std::memcpy(state.removedMm3.others.data(), payload.data(), others * sizeof(TissueVolumes));
+        // Of no others there is no place to copy to.
+        if (others > 0) std::memcpy(state.removedMm3.others.data(), payload.data(), others * sizeof(TissueVolumes));
         payload = payload.subspan(others * sizeof(TissueVolumes));
     }
     const std::size_t count = header.bricks, pieces = piecesOf(count);

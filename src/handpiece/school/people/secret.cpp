@@ -17,6 +17,9 @@ namespace {
 constexpr unsigned long long kPasses = 2;
 constexpr std::size_t kMemoryBytes = 19456 * 1024;
 constexpr std::size_t kLeastCharacters = 10, kMostBytes = 256;
+/// Without I, L, O, U.
+constexpr std::string_view kCodeLetters = "0123456789ABCDEFGHJKMNPQRSTVWXYZ";
+constexpr std::size_t kCodeLength = 12;
 
 void requireSodium() {
     static const bool isReady = sodium_init() >= 0;
@@ -94,6 +97,31 @@ std::string newSecret() {
     std::array<unsigned char, 32> bytes{};
     randombytes_buf(bytes.data(), bytes.size());
     return hexOfBytes(bytes.data(), bytes.size());
+}
+
+std::string newStationCode() {
+    requireSodium();
+    std::string code;
+    for (std::size_t i = 0; i < kCodeLength; ++i) {
+        if (i > 0 && i % 3 == 0) code += '-';
+        code += kCodeLetters[randombytes_uniform(static_cast<std::uint32_t>(kCodeLetters.size()))];
+    }
+    return code;
+}
+
+std::string typedStationCode(std::string_view typed) {
+    std::string code;
+    std::size_t count = 0;
+    for (const char c : typed) {
+        char letter = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+        if (letter == ' ' || letter == '-' || letter == '\t') continue;
+        if (letter == 'O') letter = '0';
+        if (letter == 'I' || letter == 'L') letter = '1';
+        if (count > 0 && count % 3 == 0) code += '-';
+        code += letter;
+        ++count;
+    }
+    return code;
 }
 
 std::string requestTokenOf(std::string_view loginToken) {

@@ -23,6 +23,10 @@ void requireGoodPassword(std::string_view password, std::string_view login);
 
 /// 256 random bits as 64 hexadecimal digits: a log-in's token, a station's key.
 [[nodiscard]] std::string newSecret();
+/// One-time code to type: 12 of 32 letters and digits that nobody mistakes for each other (60 bits), in threes.
+[[nodiscard]] std::string newStationCode();
+/// As typed: small letters, spaces and missing hyphens count as the code they mean.
+[[nodiscard]] std::string typedStationCode(std::string_view typed);
 /// Proves that a form came from a page of this log-in: made from its token, and does not tell it.
 [[nodiscard]] std::string requestTokenOf(std::string_view loginToken);
 /// In the same time wherever they differ.

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What a person sees of a school in a browser, and who may: pages by address, for the server to send. No HTTP here.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "handpiece/assess/task/task.h"
+#include "handpiece/school/store/books.h"
+
+namespace handpiece::school_server {
+
+/// What goes back to the browser.
+struct Page {
+    int status = 200;
+    std::string html{};
+    std::string to{};                    ///< another address instead of a page
+    std::optional<std::string> login{};  ///< token of a log-in from here on; empty: none any more
+};
+
+/// Reads an exercise of the books by its hash; null where there is none.
+using TaskOf = std::function<std::shared_ptr<const tasks::Task>(const school::Books&, const std::string&)>;
+
+/// One request of somebody who is logged in.
+struct Visit {
+    school::Books& books;
+    school::Person person;
+    std::string token;  ///< of the log-in
+    school::Milliseconds now = 0;
+};
+
+[[nodiscard]] Page classesOf(const Visit& visit);
+[[nodiscard]] Page classOf(const Visit& visit, const std::string& id);
+[[nodiscard]] Page personOf(const Visit& visit, const std::string& code);
+[[nodiscard]] Page attemptOf(const Visit& visit, const std::string& id);
+[[nodiscard]] Page resultOf(const Visit& visit, const std::string& id, const TaskOf& taskOf);
+[[nodiscard]] Page refused(const std::string& what, int status);
+
+}  // namespace handpiece::school_server

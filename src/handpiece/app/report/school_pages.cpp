@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/report/school_pages.h"
+
+#include <fmt/format.h>
+
+#include "handpiece/app/report/report_html.h"
+#include "handpiece/app/statements/statements.h"
+#include "handpiece/base/config/words.h"
+
+namespace handpiece::report {
+namespace {
+
+using config::words;
+using Cell = HtmlReport::Cell;
+using Tone = HtmlReport::Tone;
+
+std::string said(double score, double most) {
+    return most > 0.0 ? fmt::format("{:.1f} / {:.1f}", score, most) : words()("school.no-score");
+}
+std::string stateWord(const std::string& state) {
+    return state == "proven"    ? words()("school.proven")
+           : state == "refused" ? words()("school.refused")
+                                : words()("school.provisional");
+}
+std::string passedWord(const std::string& passed) {
+    return passed == "yes"  ? words()("assessment.passed")
+           : passed == "no" ? words()("assessment.not-passed")
+                            : words()("assessment.teacher");
+}
+std::string shownAs(const Names& names, const std::string& code) {
+    const auto found = names.find(code);
+    return found != names.end() && !found->second.empty() ? found->second : code;
+}
+
+/// Where one is, who one is, and the way out.
+void addHead(HtmlReport& page, const Looker& who) {
+    page.paragraph(words()("school.logged-in", who.name.empty() ? who.code : who.name), Tone::note);
+    page.link("/classes", words()("school.classes"));
+    page.form("/logout", {{"token", "", "hidden", who.requestToken}}, words()("school.log-out"));
+}
+
+}  // namespace
+
+std::string momentOf(school::Milliseconds since1970) {
+    std::string text = statements::timestamp(since1970).substr(0, 16);
+    text[10] = ' ';
+    return text;
+}
+
+std::string loginPage(const std::string& login, const std::string& wrong) {
+    HtmlReport page(words()("school.title"));
+    if (!wrong.empty()) page.paragraph(wrong, Tone::bad);
+    page.form("/login",
+              {{"login", words()("school.login"), "text", login}, {"password", words()("school.password"), "password"}},
+              words()("school.log-in"));
+    return page.text();
+}
+
+std::string classesPage(const Looker& who, const std::vector<school::SchoolClass>& classes) {
+    HtmlReport page(words()("school.classes"));
+    addHead(page, who);
+    if (classes.empty()) page.paragraph(words()("school.no-classes"), Tone::missing);
+    std::vector<std::vector<Cell>> rows;
+    for (const school::SchoolClass& one : classes)
+        rows.push_back({{one.name, "/classes/" + one.id}, {one.closed > 0 ? words()("school.closed") : ""}});
+    if (!rows.empty()) page.linkedTable({words()("school.class"), ""}, rows);
+    page.link("/people/" + who.code, words()("school.own-work"));
+    return page.text();
+}
+
+std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names) {
+    HtmlReport page(of.schoolClass.name);
+    addHead(page, who);
+    std::vector<std::string> header{words()("class.student")};
+    for (const school::Assignment& assignment : of.assignments)
+        header.push_back(assignment.title);
+    std::map<std::pair<std::string, std::string>, const school::ClassCell*> cells;
+    for (const school::ClassCell& cell : of.cells)
+        cells[{cell.person, cell.assignment}] = &cell;
+    std::vector<std::vector<Cell>> rows;
+    for (const school::Person& student : of.students) {
+        std::vector<Cell> row{{shownAs(names, student.code), "/people/" + student.code}};
+        for (const school::Assignment& assignment : of.assignments) {
+            const auto found = cells.find({student.code, assignment.id});
+            if (found == cells.end()) {
+                row.push_back({"\u2013"});
+                continue;
+            }
+            const school::ClassCell& c = *found->second;
+            std::string text = fmt::format("{} ({})", said(c.score, c.maxScore), stateWord(c.state));
+            if (c.attempts > 1) text += ", " + words()("school.attempts", c.attempts);
+            if (c.marks > 0) text += ", " + words()("school.marks", c.marks);
+            row.push_back({std::move(text), "/attempts/" + c.last});
+        }
+        rows.push_back(std::move(row));
+    }
+    if (rows.empty())
+        page.paragraph(words()("school.no-students"), Tone::missing);
+    else
+        page.linkedTable(header, rows, words()("school.class-about"));
+    return page.text();
+}
+
+std::string personPage(const Looker& who, const std::string& person, const Names& names,
+                       const std::vector<std::pair<school::PushedAttempt, std::optional<school::Score>>>& work) {
+    HtmlReport page(shownAs(names, person));
+    addHead(page, who);
+    std::vector<std::vector<Cell>> rows;
+    for (auto one = work.rbegin(); one != work.rend(); ++one) {
+        const school::Attempt& a = one->first.attempt;
+        const bool isThere = one->second.has_value();
+        rows.push_back({{momentOf(a.finished), "/attempts/" + a.id},
+                        {a.exercise},
+                        {isThere ? said(one->second->score, one->second->maxScore) : said(a.score, a.maxScore)},
+                        {stateWord(isThere ? one->second->state : "provisional")},
+                        {passedWord(isThere ? one->second->passed : a.passed)},
+                        {a.device}});
+    }
+    if (rows.empty())
+        page.paragraph(words()("class.no-results"), Tone::missing);
+    else
+        page.linkedTable({words()("school.finished"), words()("school.exercise"), words()("class.score"),
+                          words()("school.state"), words()("class.verdict"), words()("assessment.device")},
+                         rows);
+    return page.text();
+}
+
+std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const Names& names,
+                        const std::vector<school::Score>& scores, const std::vector<school::Mark>& marks,
+                        const std::vector<school::Comment>& comments) {
+    const school::Attempt& a = p.attempt;
+    HtmlReport page(fmt::format("{}: {}", shownAs(names, p.person), a.exercise));
+    addHead(page, who);
+    if (scores.empty()) {
+        page.paragraph(words()("school.waits"), Tone::missing);
+    } else {
+        const school::Score& s = scores.back();
+        page.paragraph(fmt::format("{} {}", stateWord(s.state), said(s.score, s.maxScore)),
+                       s.state == "proven" ? Tone::good : Tone::bad);
+        if (!s.reason.empty()) page.paragraph(s.reason, s.state == "proven" ? Tone::note : Tone::bad);
+        if (!s.result.empty()) page.link("/attempts/" + a.id + "/result", words()("school.whole-result"));
+    }
+    const auto fact = [](const char* word, std::string value) { return std::pair(words()(word), std::move(value)); };
+    page.facts(words()("school.station-says"),
+               {fact("school.finished", momentOf(a.finished)), fact("school.received", momentOf(p.received)),
+                fact("class.score", said(a.score, a.maxScore)), fact("class.verdict", passedWord(a.passed)),
+                fact("assessment.device", a.device), fact("school.worked", fmt::format("{:.0f} s", a.workedS)),
+                fact("assessment.exercise", a.exerciseHash)});
+    page.heading(words()("school.marks-heading"));
+    std::vector<std::vector<Cell>> rows;
+    for (const school::Mark& m : marks)
+        rows.push_back(
+            {{momentOf(m.made)}, {shownAs(names, m.marker)}, {said(m.points, m.maxPoints)}, {passedWord(m.verdict)}});
+    if (rows.empty())
+        page.paragraph(words()("school.no-marks"), Tone::note);
+    else
+        page.linkedTable(
+            {words()("school.made"), words()("school.marker"), words()("assessment.points"), words()("class.verdict")},
+            rows);
+    for (const school::Comment& comment : comments)
+        page.paragraph(fmt::format("{}: {}", shownAs(names, comment.author), comment.words));
+    return page.text();
+}
+
+std::string refusalPage(const std::string& what, const std::string& remedy) {
+    HtmlReport page(words()("school.title"));
+    page.paragraph(what, Tone::bad);
+    if (!remedy.empty()) page.paragraph(remedy, Tone::note);
+    page.link("/classes", words()("school.classes"));
+    return page.text();
+}
+
+}  // namespace handpiece::report

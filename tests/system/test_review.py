@@ -20,7 +20,7 @@ class Review(SystemTest):
 
     def work(self, page, *options):
         done = subprocess.run(["node", ROOT / "tests" / "web" / "review_test.mjs", page, *options],
-                              capture_output=True, text=True, timeout=600, check=False)
+                              capture_output=True, text=True, timeout=1500, check=False)
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
 
     @unittest.skipUnless(shutil.which("node"), "no node (Debian: nodejs)")

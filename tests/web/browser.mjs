@@ -70,7 +70,7 @@ export class Browser {
         return result.value;
     }
     /** Until an expression is true. */
-    async until(expression, seconds = 60) {
+    async until(expression, seconds = 240) {
         for (const end = Date.now() + 1000 * seconds; Date.now() < end; await new Promise((done) => setTimeout(done, 50)))
             if (await this.evaluate(expression)) return;
         throw new Error(`not within ${seconds} s: ${expression}\n${this.console.join("\n")}`);

@@ -77,6 +77,8 @@ bool Worker::workOnce() {
 school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost) {
     const std::optional<school::PushedAttempt> attempt = books.attempt(job.attempt);
     if (!attempt) return refused(job, "the attempt is gone");
+    if (const auto other = books.otherPersonWith(job.attempt))
+        return refused(job, "the same session came as another person's work, too");
     std::string exercise = attempt->attempt.exerciseHash;
     if (!attempt->assignment.empty())
         if (const auto assigned = books.assignment(attempt->assignment)) exercise = assigned->pack;

@@ -471,7 +471,9 @@ TEST_P(ManyWorksBlind, TwelveAreMarkedToTheEnd) {
         const bool isRepeat = desk().isRepeat(code);
         again += isRepeat ? 1 : 0;
         // What is wrong with a work, which may be drawn as well, stands in the place of that.
-        if (!desk().error(code)) EXPECT_EQ(cell(row, WorkTable::kState).contains("second time"), isRepeat);
+        if (!desk().error(code)) {
+            EXPECT_EQ(cell(row, WorkTable::kState).contains("second time"), isRepeat);
+        }
     }
     EXPECT_EQ(again, 1) << "a tenth of fourteen";
     const int twin = rowOf("S-999-again.handpiece");

@@ -149,6 +149,44 @@ TEST(ToothState, RestoresInPiecesWithoutATear) {
     }
 }
 
+TEST(ToothState, IsPutBackToTheBitAlsoWhereBricksAreAnUlpApart) {
+    const auto base = ballTooth(2.0, 1.0, 0.05);
+    ToothState cut(base);
+    cutAway(cut, [](const Vec3& p) { return test::ball(p - Vec3(1.9, 0.1, -0.2), 0.5); });
+    StateDelta state = cut.state();
+    // As a cut leaves it: one brick has risen by an ulp at nodes where its neighbour, which did not change, has not.
+    std::size_t apart = 0;
+    const field::FieldView view = cut.field().view();
+    std::vector<BrickId> changed;
+    for (const StateDelta::Brick& brick : state.bricks)
+        changed.push_back(brick.id);
+    for (StateDelta::Brick& brick : state.bricks) {
+        auto other = field::brickAt(view.bricks, denseOf(brick.id));
+        --other[1];
+        const std::uint32_t there = field::denseOf(view.bricks, other);
+        if (view.brickIndex[there] < 0 || std::binary_search(changed.begin(), changed.end(), brickId(0, there)))
+            continue;
+        for (int x = 1; x < 8; ++x)
+            brick.values[static_cast<std::size_t>(x)] = std::nextafter(brick.values[static_cast<std::size_t>(x)], 1.0f);
+        ++apart;
+    }
+    ASSERT_GT(apart, 0u);
+    for (const std::size_t most : {std::size_t{1}, std::size_t{7}, state.bricks.size()}) {
+        ToothState field(base);
+        for (std::size_t from = 0; from < state.bricks.size();)
+            from = field.restore(state, from, most);
+        EXPECT_EQ(field.stateHash(), stateHash(state)) << most;
+        // And back again, and once more.
+        const StateDelta undo = changeBetween(state, StateDelta{});
+        for (std::size_t from = 0; from < undo.bricks.size();)
+            from = field.restore(undo, from, most);
+        EXPECT_TRUE(field.state().bricks.empty()) << most;
+        for (std::size_t from = 0; from < state.bricks.size();)
+            from = field.restore(state, from, most);
+        EXPECT_EQ(field.stateHash(), stateHash(state)) << most;
+    }
+}
+
 TEST(ToothState, BoundsInTheCoreHoldAfterARestore) {
     const auto base = ballTooth(3.0, 2.0, 0.05);
     const Vec3 at(2.6, 0.3, -0.2);

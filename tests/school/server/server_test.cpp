@@ -72,6 +72,29 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
     EXPECT_THAT(scoresOf(changed).front().reason, HasSubstr("another than the attempt names"));
 }
 
+TEST_F(SchoolTest, OnePersonsSessionIsNotAnothersWork) {
+    School school(data());
+    {
+        Books open(data());
+        const school::Person other{"s018", "Jun", "jun", "", "", {"student"}, 1, 0};
+        open.add(std::span(&other, 1), {"server", 1});
+        open.offerCode("ABC-DEF-GHJ-KMP", "chair 2", 4'000'000'000'000, {"server", 1});
+    }
+    Worker worker({data()}, systemClock());
+    Chair own, borrowed;
+    Enrolment mine = school_station::enrol(school.address(), kCode, "s017");
+    const std::string first = own.finish(session(), "one.h5");
+    (void)own.push(mine);
+    EXPECT_TRUE(worker.workOnce());
+    Enrolment theirs = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMP", "s018");
+    const std::string second = borrowed.finish(session(), "one.h5");
+    (void)borrowed.push(theirs);
+    EXPECT_TRUE(worker.workOnce());
+    EXPECT_EQ(scoresOf(first).back().state, "proven");
+    EXPECT_EQ(scoresOf(second).back().state, "refused");
+    EXPECT_THAT(scoresOf(second).back().reason, HasSubstr("another person's"));
+}
+
 TEST_F(SchoolTest, WorkOnWhatTheSchoolGaveIsToldAsThat) {
     School school(data());
     {

@@ -13,7 +13,8 @@ std::string studentPage(const Work& work, const Result& result, const tasks::Tas
                         const report::AssessmentPictures& pictures, bool isDrawn, const core::Progress& progress) {
     std::vector<report::Reviewed> chain;
     for (const Recording& one : work.recordings)
-        chain.push_back({one.path, one.name, one.untilTick});
+        // Its file's name alone: a page goes to others, and folders are their owner's.
+        chain.push_back({one.path, one.path.filename().string(), one.untilTick});
     const bool isKept =
         std::all_of(chain.begin(), chain.end(), [](const report::Reviewed& one) { return core::isThere(one.path); });
     if (chain.empty() || !isKept) return report::studentReport(result, task, rubric, pictures);

@@ -8,8 +8,8 @@
 namespace handpiece::core {
 
 /// Raised in each commit that renews tests/golden/hashes.txt, or that otherwise makes the same inputs give other bits:
-/// 3 tells the depth among several teeth right where two of them hold the bur. Sessions carry it: only those of the
+/// 4 puts a tooth back to the bit, also where two bricks are an ulp apart. Sessions carry it: only those of the
 /// same number are cut again bit for bit. A file without one has 1.
-inline constexpr std::int32_t kEngineRevision = 3;
+inline constexpr std::int32_t kEngineRevision = 4;
 
 }  // namespace handpiece::core

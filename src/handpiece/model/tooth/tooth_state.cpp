@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/model/tooth/tooth_state.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -149,7 +150,8 @@ void ToothState::dropFirstDirty() noexcept {
     flags = static_cast<std::uint8_t>(flags & ~(kWaiting | kShows));
 }
 
-void ToothState::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
+void ToothState::shareFaces(std::uint32_t dense, std::int32_t stored,
+                            std::span<const StateDelta::Brick> yetToCome) noexcept {
     const std::array<std::int32_t, 3> brick = field::brickAt(field_.storage().bricks, dense);
     const float* mine = values(stored);
     for (int neighbour = 0; neighbour < 27; ++neighbour) {
@@ -170,6 +172,9 @@ void ToothState::shareFaces(std::uint32_t dense, std::int32_t stored) noexcept {
         const std::uint32_t there = field::denseOf(field_.storage().bricks, other);
         const std::int32_t otherStored = field_.storage().brickIndex[there];
         if (otherStored < 0) continue;
+        const auto turn = std::lower_bound(yetToCome.begin(), yetToCome.end(), brickId(tooth_, there),
+                                           [](const StateDelta::Brick& b, BrickId id) { return b.id < id; });
+        if (turn == yetToCome.end() || turn->id != brickId(tooth_, there)) continue;
         float* theirs = values(otherStored);
         const std::size_t run = sizeof(float) * static_cast<std::size_t>(high[0] - low[0] + 1);
         for (int z = low[2]; z <= high[2]; ++z)
@@ -200,8 +205,9 @@ std::size_t ToothState::restore(const StateDelta& change, std::size_t from, std:
             noteChanged(dense, true);
             raiseAround(dense, values(stored));
         }
-        // Its neighbours follow at once, also those whose turn is yet to come: the field is never torn.
-        shareFaces(dense, stored);
+        // Those whose turn is yet to come follow at once: the field is never torn on the way. All others are as they
+        // will be, to the last bit, and stay so: a cut may leave two bricks an ulp apart on the nodes that they share.
+        shareFaces(dense, stored, std::span(change.bricks).subspan(from + 1));
     }
     if (!isMine()) {
         removedMm3_ = change.removedMm3.of(tooth_);

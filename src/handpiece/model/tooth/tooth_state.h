@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "handpiece/base/core/realtime.h"
@@ -62,8 +63,9 @@ class ToothState {
     [[nodiscard]] std::size_t waitingBricks() const noexcept { return nextDirty_ - firstDirty_; }
 
     /// Puts bricks `from` .. of a change in place, at most `most` of them and no other tooth's; returns the next
-    /// `from`. With the last one of this tooth its removed volumes become those of the change. After every call bricks
-    /// agree on the nodes they share, and the bounds elsewhere hold; they are as tight as at first again only when
+    /// `from`. With the last one of this tooth its removed volumes become those of the change, and the tooth is the one
+    /// that was meant, bit for bit. After every call bricks agree on the nodes they share as far as they do before and
+    /// after the change, and the bounds elsewhere hold; they are as tight as at first again only when
     /// nothing is cut any more.
     std::size_t restore(const StateDelta& change, std::size_t from, std::size_t most) noexcept HANDPIECE_REALTIME;
 
@@ -83,7 +85,7 @@ class ToothState {
     void dropFirstDirty() noexcept;
     void noteWaiting(std::uint32_t dense, bool shows) noexcept;
     void noteUncut(std::uint32_t dense) noexcept;
-    void shareFaces(std::uint32_t dense, std::int32_t stored) noexcept;
+    void shareFaces(std::uint32_t dense, std::int32_t stored, std::span<const StateDelta::Brick> yetToCome) noexcept;
     void raiseAround(std::uint32_t dense, const float* values) noexcept;
     void resetCoarse() noexcept;
 

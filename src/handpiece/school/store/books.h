@@ -240,6 +240,8 @@ class Books {
     /// By when they were finished; empty `assignment`: all of the person's.
     [[nodiscard]] std::vector<PushedAttempt> attemptsOf(const std::string& person,
                                                         const std::string& assignment = {}) const;
+    /// Another person whose attempt has one of this one's files too: a session is one person's. None: nobody.
+    [[nodiscard]] std::optional<std::string> otherPersonWith(const std::string& attempt) const;
     /// In their order.
     [[nodiscard]] std::vector<Score> scoresOf(const std::string& attempt) const;
     bool push(const Mark& mark, const Act& act);

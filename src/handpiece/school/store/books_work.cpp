@@ -253,6 +253,17 @@ std::vector<PushedAttempt> Books::attemptsOf(const std::string& person, const st
     return all;
 }
 
+std::optional<std::string> Books::otherPersonWith(const std::string& attempt) const {
+    Statement row = state_->ask(
+        "SELECT a.person FROM attempt_files f JOIN attempt_files g ON g.file = f.file JOIN attempts a ON a.id = "
+        "g.attempt "
+        "JOIN attempts t ON t.id = f.attempt WHERE f.attempt = $1 AND a.person <> t.person ORDER BY a.received, a.id "
+        "LIMIT 1",
+        attempt);
+    if (!row.next()) return {};
+    return row.text(0);
+}
+
 std::vector<Score> Books::scoresOf(const std::string& attempt) const {
     std::vector<Score> all;
     Statement rows = state_->ask(

@@ -42,7 +42,9 @@ Relation relationTo(const Visit& v, const school::PushedAttempt& p) {
     relation.isOwn = p.person == v.person.code;
     if (p.assignment.empty()) {
         relation.isPrivate = !relation.isOwn && !v.books.isShared(p.attempt.id);
-        // Shared practice is seen by the teachers of one's classes.
+        // Shared practice is seen by the teachers of one's classes; of one's own and of what is private no class
+        // decides.
+        if (relation.isOwn || relation.isPrivate) return relation;
         for (const school::SchoolClass& one : v.books.classes())
             if (roleIn(v.books, one.id, p.person) == Role::student)
                 if (const auto role = roleIn(v.books, one.id, v.person.code); role && role != Role::student)

@@ -181,12 +181,8 @@ void status(const StationOptions& o) {
     const fs::path home = homeOf(o);
     const school_station::Enrolment enrolment = school_station::readEnrolment(home / "school.json");
     std::size_t waiting = 0;
-    if (fs::is_regular_file(home / "results.db")) {
-        school::Store store(home / "results.db");
-        std::int64_t from = enrolment.sent;
-        for (auto some = store.outbox(from); !some.empty(); some = store.outbox(from))
-            waiting += some.size(), from = some.back().sequence;
-    }
+    if (fs::is_regular_file(home / "results.db"))
+        waiting = school_station::waitingIn(school::Store(home / "results.db"), enrolment);
     fmt::print("{}: {} waiting here\n", enrolment.server, waiting);
     const school_wire::Status there = school_station::status(enrolment);
     fmt::print("server {}, engine {}; files that have not come: {}\n", there.server, there.engine,

@@ -88,13 +88,8 @@ class Pusher {
           line_(enrolment.server, enrolment.key) {}
 
     Pushed run(const core::Progress& progress) {
-        const auto last = [&] {
-            std::int64_t to = enrolment_.sent;
-            for (auto some = store_.outbox(to); !some.empty(); some = store_.outbox(to))
-                to = some.back().sequence;
-            return to;
-        }();
-        const std::int64_t first = enrolment_.sent;
+        const std::size_t all = waitingIn(store_, enrolment_);
+        std::size_t done = 0;
         for (auto some = store_.outbox(enrolment_.sent); !some.empty(); some = store_.outbox(enrolment_.sent))
             for (const school::Outgoing& one : some) {
                 try {
@@ -105,9 +100,8 @@ class Pusher {
                 }
                 enrolment_.sent = one.sequence;
                 writeEnrolment(enrolment_, file_);
-                core::report(
-                    progress,
-                    last > first ? static_cast<double>(one.sequence - first) / static_cast<double>(last - first) : 1.0);
+                ++done;
+                core::report(progress, static_cast<double>(done) / static_cast<double>(std::max(done, all)));
             }
         return std::move(pushed_);
     }
@@ -210,6 +204,14 @@ Enrolment enrol(const std::string& server, const std::string& code, const std::s
 Pushed push(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file,
             const core::Progress& progress) {
     return Pusher(store, sessions, enrolment, file).run(progress);
+}
+
+std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment) {
+    std::size_t waiting = 0;
+    std::int64_t from = enrolment.sent;
+    for (auto some = store.outbox(from); !some.empty(); some = store.outbox(from))
+        waiting += some.size(), from = some.back().sequence;
+    return waiting;
 }
 
 school_wire::Status status(const Enrolment& enrolment) {

@@ -41,6 +41,8 @@ struct Pushed {
 Pushed push(school::Store& store, const std::filesystem::path& sessions, Enrolment& enrolment,
             const std::filesystem::path& file, const core::Progress& progress = {});
 
+/// How much of the outbox the server has not heard of yet.
+[[nodiscard]] std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment);
 [[nodiscard]] school_wire::Status status(const Enrolment& enrolment);
 
 }  // namespace handpiece::school_station

@@ -26,8 +26,7 @@ class Conditions {
     void check(const SimulationSettings& s) {
         if (s.fullRemoval) tell("whatever the bur touched was gone at once");
         if (s.hull) tell("the tooth was felt as its hull");
-        checkTissues(s);
-        checkBur(s);
+        checkTissuesAndBur(s);
         checkDrive(s.drive);
     }
     /// Gingiva and bone as they were felt: without them nothing of them is touched.
@@ -41,33 +40,26 @@ class Conditions {
     void tell(std::string what) {
         if (std::find(told_.begin(), told_.end(), what) == told_.end()) told_.push_back(std::move(what));
     }
-    /// As a session keeps them, which is all that decides what is cut.
-    static json kept(const SimulationSettings& s, const char* what) {
-        return json::parse(simulation::settingsJson(s)).at(what);
-    }
-    void checkTissues(const SimulationSettings& s) {
-        SimulationSettings own = s;
-        own.tissues = task_.toothCase.tissues;
-        const json mine = kept(own, "tissues"), its = kept(s, "tissues");
-        for (const auto& [tissue, row] : mine.items())
-            if (!its.contains(tissue) || its.at(tissue) != row)
-                tell(fmt::format("{} was another than the exercise's", tissue));
-    }
-    void checkBur(const SimulationSettings& s) {
+    /// Held against the exercise's own as a session keeps them, which is all that decides what is cut.
+    void checkTissuesAndBur(const SimulationSettings& s) {
         const std::string& name = s.bur->name();
         const auto& exercise = task_.toothCase.exercise;
         if (exercise && !exercise->allowedBurs.empty() &&
             std::find(exercise->allowedBurs.begin(), exercise->allowedBurs.end(), name) == exercise->allowedBurs.end())
             tell(fmt::format("bur {} is none of the exercise's", name));
         SimulationSettings own = s;
+        own.tissues = task_.toothCase.tissues;
         try {
             const instrument::Instrument known = instrument::makeInstrument(name);
             own.bur = known.bur, own.cuttingParameters = known.cuttingParameters;
         } catch (const core::Error&) {
-            return tell(fmt::format("bur {} is not in the catalogue", name));
+            tell(fmt::format("bur {} is not in the catalogue", name));
         }
-        if (kept(own, "outline_mm") != kept(s, "outline_mm")) tell(fmt::format("bur {} had another shape", name));
-        if (kept(own, "ability") != kept(s, "ability")) tell(fmt::format("bur {} cut otherwise than it does", name));
+        const json mine = json::parse(simulation::settingsJson(own)), its = json::parse(simulation::settingsJson(s));
+        for (const auto& [tissue, row] : mine.at("tissues").items())
+            if (its.at("tissues").at(tissue) != row) tell(fmt::format("{} was another than the exercise's", tissue));
+        if (mine.at("outline_mm") != its.at("outline_mm")) tell(fmt::format("bur {} had another shape", name));
+        if (mine.at("ability") != its.at("ability")) tell(fmt::format("bur {} cut otherwise than it does", name));
     }
     void checkDrive(const instrument::Drive& drive) {
         const auto& known = instrument::drives();

@@ -10,20 +10,6 @@
 namespace handpiece::school {
 namespace {
 
-/// A list in one field: none of the values has a line's end in it.
-std::string joinedLines(const std::vector<std::string>& all) {
-    return fmt::format("{}", fmt::join(all, "\n"));
-}
-std::vector<std::string> partedLines(const std::string& text) {
-    std::vector<std::string> all;
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t end = std::min(text.find('\n', from), text.size());
-        all.push_back(text.substr(from, end - from));
-        from = end + 1;
-    }
-    return all;
-}
-
 void requireId(const char* what, const std::string& id) {
     if (!isHex(id, 32)) throw invalid(what, id, "send 32 hexadecimal digits");
 }

@@ -13,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace handpiece::school {
 
@@ -118,5 +119,9 @@ class Transaction {
     Database& database_;
     bool isOpen_ = true;
 };
+
+/// A list in one field: none of the values has a line's end in it.
+[[nodiscard]] std::string joinedLines(const std::vector<std::string>& all);
+[[nodiscard]] std::vector<std::string> partedLines(const std::string& text);
 
 }  // namespace handpiece::school

@@ -60,20 +60,6 @@ CREATE TABLE returned (
 )sql",
 };
 
-/// A list in one field: none of the values has a line's end in it.
-std::string joined(const std::vector<std::string>& all) {
-    return fmt::format("{}", fmt::join(all, "\n"));
-}
-std::vector<std::string> parted(const std::string& text) {
-    std::vector<std::string> all;
-    for (std::size_t from = 0; from < text.size();) {
-        const std::size_t end = std::min(text.find('\n', from), text.size());
-        all.push_back(text.substr(from, end - from));
-        from = end + 1;
-    }
-    return all;
-}
-
 void post(Database& database, const char* kind, const std::string& id, Milliseconds made) {
     Statement(database, "INSERT INTO outbox (kind, id, made) VALUES (?, ?, ?)").with(kind).with(id).with(made).run();
 }
@@ -125,8 +111,8 @@ Attempt attemptOf(const Statement& row) {
     attempt.exercise = row.text(1);
     attempt.exerciseHash = row.text(2);
     attempt.rubricHash = row.text(3);
-    attempt.sessionHashes = parted(row.text(4));
-    attempt.recordings = parted(row.text(5));
+    attempt.sessionHashes = partedLines(row.text(4));
+    attempt.recordings = partedLines(row.text(5));
     attempt.began = row.integer(6);
     attempt.finished = row.integer(7);
     attempt.device = row.text(8);
@@ -241,8 +227,8 @@ void Store::insert(const Attempt& a) {
         .with(a.exercise)
         .with(a.exerciseHash)
         .with(a.rubricHash)
-        .with(joined(a.sessionHashes))
-        .with(joined(a.recordings))
+        .with(joinedLines(a.sessionHashes))
+        .with(joinedLines(a.recordings))
         .with(a.began)
         .with(a.finished)
         .with(a.device)

@@ -22,7 +22,7 @@ THIRD_PARTY = {
     r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",
     r"sodium\.h": r"src/handpiece/school/(store/content_files|people/secret)\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
-    r"httplib\.h": r"apps/school/\w+\.cpp|tests/school/.*",
+    r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
     r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/app/.*",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",
     r"benchmark/": r"bench/.*",

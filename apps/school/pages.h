@@ -17,9 +17,12 @@ namespace handpiece::school_server {
 /// What goes back to the browser.
 struct Page {
     int status = 200;
-    std::string html{};
+    std::string body{};
     std::string to{};                    ///< another address instead of a page
     std::optional<std::string> login{};  ///< token of a log-in from here on; empty: none any more
+    std::string type = "text/html; charset=utf-8";
+    std::string fileName{};   ///< to be kept as a file of this name
+    bool runsScript = false;  ///< modules of this server, which may ask it; else none runs
 };
 
 /// Reads an exercise of the books by its hash; null where there is none.

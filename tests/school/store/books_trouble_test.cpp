@@ -221,7 +221,7 @@ TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
         waitpid(child, nullptr, 0);
         EXPECT_EQ(dump(), before);
         EXPECT_EQ(schema(), whole);
-        EXPECT_EQ(sql("SELECT version FROM handpiece_books"), "2");
+        EXPECT_EQ(sql("SELECT version FROM handpiece_books"), std::to_string(Books::kVersion));
     }
 }
 

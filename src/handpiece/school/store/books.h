@@ -161,7 +161,7 @@ struct BookTable {
 /// which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
 class Books {
   public:
-    static constexpr int kVersion = 2;
+    static constexpr int kVersion = 5;
     /// A job that so many workers took and none gave back is given up.
     static constexpr int kMostTurns = 5;
 
@@ -276,6 +276,7 @@ class Books {
     [[nodiscard]] std::vector<BookTable> everything() const;
 
   private:
+    friend class BooksRoom;
     struct State;
     std::unique_ptr<State> state_;
 };

@@ -100,6 +100,15 @@ CREATE TABLE logins (
   expires INT8 NOT NULL) STRICT;
 CREATE INDEX logins_by_person ON logins (person);
 )sql",
+    // Operation of a server.
+    R"sql(
+)sql",
+    // Teaching: marking, standards, exemplars.
+    R"sql(
+)sql",
+    // Exams and other systems.
+    R"sql(
+)sql",
 };
 
 /// What is written once and never changed, also by whoever comes to the database by another way.

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/answers.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdio>
+#include <map>
+#include <string_view>
+
+#include "school/wire.h"
+
+namespace handpiece::school_server {
+namespace {
+
+using httplib::Request;
+using httplib::Response;
+
+constexpr const char *kJson = "application/json", *kCookie = "handpiece", *kPolicy = "Content-Security-Policy";
+
+int statusOf(const core::Error& error) {
+    static const std::map<std::string, int, std::less<>> statuses{
+        {"message-damaged", 400}, {"books-invalid", 400},   {"not-enrolled", 401},  {"code-unknown", 403},
+        {"books-unknown", 404},   {"books-duplicate", 409}, {"books-changed", 409}, {"upload-offset", 409},
+        {"upload-mismatch", 422}, {"no-space", 507},        {"store-locked", 503},  {"store-gone", 503},
+        {"store-refused", 503},   {"protocol-other", 426}};
+    const auto found = statuses.find(error.id());
+    return found != statuses.end() ? found->second : 500;
+}
+
+}  // namespace
+
+void answer(Response& response, const std::string& json, int status) {
+    response.status = status;
+    response.set_header(kPolicy, "default-src 'none'; frame-ancestors 'none'");
+    response.set_content(json, kJson);
+}
+void answer(Response& response, const core::Error& error) {
+    // Where it went wrong here is not a station's to know, unless it is its own.
+    const int status = statusOf(error);
+    if (status < 500 || status == 503 || status == 507) return answer(response, school_wire::toJson(error), status);
+    std::fprintf(stderr, "handpiece-school: %s\n", error.what());
+    answer(
+        response,
+        school_wire::toJson(core::Error("something went wrong there", "", "tell who looks after it; it is in its log")
+                                .as("server-failed")),
+        status);
+}
+
+void answer(Response& response, const Page& page, bool secure) {
+    response.set_header(kPolicy, fmt::format("default-src 'none'; style-src 'unsafe-inline'; img-src {}; form-action "
+                                             "'self'; base-uri 'none'; frame-ancestors 'none'",
+                                             page.runsScript ? "'self' data: blob:; script-src 'self'; connect-src "
+                                                               "'self'"
+                                                             : "'self' data:"));
+    if (!page.fileName.empty())
+        response.set_header("Content-Disposition", fmt::format("attachment; filename=\"{}\"", page.fileName));
+    if (page.login)
+        response.set_header("Set-Cookie",
+                            fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}; Max-Age={}", kCookie, *page.login,
+                                        secure ? "; Secure" : "", page.login->empty() ? 0 : kLoginMs / 1000));
+    response.status = page.status;
+    if (page.to.empty()) return response.set_content(page.body, page.type);
+    response.status = 303;
+    response.set_header("Location", page.to);
+    response.set_content("", "text/plain");
+}
+
+std::string tokenOf(const Request& request) {
+    const std::string cookies = request.get_header_value("Cookie"), name = std::string(kCookie) + "=";
+    for (std::size_t at = 0; at < cookies.size();) {
+        const std::size_t end = std::min(cookies.find(';', at), cookies.size());
+        std::string_view one = std::string_view(cookies).substr(at, end - at);
+        while (one.starts_with(' '))
+            one.remove_prefix(1);
+        if (one.starts_with(name) && one.size() == name.size() + 64) return std::string(one.substr(name.size()));
+        at = end + 1;
+    }
+    return {};
+}
+
+std::uint64_t numberOf(const Request& request, const char* name) {
+    const std::string text = request.get_param_value(name);
+    std::uint64_t value = 0;
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (text.empty() || ec != std::errc() || end != text.data() + text.size())
+        throw core::Error(fmt::format("\"{}\" is no number", text), name, "send a whole number")
+            .as("message-damaged", {name, "is no number"});
+    return value;
+}
+
+}  // namespace handpiece::school_server

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// Log-in, and what persons see of classes and work.
+#include <algorithm>
+#include <mutex>
+
+#include "handpiece/app/report/school_pages.h"
+#include "handpiece/base/config/words.h"
+#include "handpiece/school/people/secret.h"
+#include "school/answers.h"
+#include "school/routes.h"
+
+namespace handpiece::school_server {
+namespace {
+
+using httplib::Request;
+using httplib::Response;
+
+Page logIn(Service& of, const Request& request) {
+    const std::string login = request.get_param_value("login"), password = request.get_param_value("password");
+    const school::Milliseconds now = of.clock();
+    const std::string from = "from " + request.remote_addr, as = "login " + login;
+    {
+        const std::lock_guard lock(of.guessing);
+        if (const std::int64_t wait = std::max(of.throttle.waitMs(from, now), of.throttle.waitMs(as, now)); wait > 0)
+            return {429, report::loginPage(login, config::words()("school.wait", (wait + 999) / 1000)), {}, {}};
+        // Counted before it is looked at: a hundred guesses at once are a hundred.
+        of.throttle.failed(from, now), of.throttle.failed(as, now);
+    }
+    auto open = of.books.take();
+    constexpr std::size_t kMostPassword = 256;
+    const auto person = login.size() <= 200 ? open->personByLogin(login) : std::nullopt;
+    bool isRight = false;
+    if (password.size() <= kMostPassword) {
+        if (person && !person->password.empty())
+            isRight = school::isPassword(person->password, password);
+        else
+            school::spendPasswordTime(password);
+    }
+    if (!isRight) return {401, report::loginPage(login, config::words()("school.wrong-login")), {}, {}};
+    {
+        const std::lock_guard lock(of.guessing);
+        of.throttle.succeeded(from), of.throttle.succeeded(as);
+    }
+    const std::string token = school::newSecret();
+    open->addLogin(token, person->code, now + kLoginMs, {person->code, now});
+    return {303, {}, "/classes", token};
+}
+
+}  // namespace
+
+std::vector<Entry> pageRoutes(Service* of) {
+    return {
+        {"GET", "/login", Handler([of](const Request&, Response& response) {
+             answer(response, Page{200, report::loginPage({}, {}), {}, {}}, of->isSecure());
+         })},
+        {"POST", "/login", Handler([of](const Request& request, Response& response) {
+             answer(response, logIn(*of, request), of->isSecure());
+         })},
+        {"POST", "/logout", Shown([](const Request&, const Visit& visit) {
+             visit.books.endLogin(visit.token);
+             return Page{303, {}, "/login", std::string()};
+         })},
+        {"GET", "/", Shown([](const Request&, const Visit&) {
+             return Page{303, {}, "/classes", {}};
+         })},
+        {"GET", "/classes", Shown([](const Request&, const Visit& visit) { return classesOf(visit); })},
+        {"GET", "/classes/([0-9A-Za-z._-]{1,64})",
+         Shown([](const Request& request, const Visit& visit) { return classOf(visit, request.matches[1]); })},
+        {"GET", "/people/([0-9A-Za-z._-]{1,64})",
+         Shown([](const Request& request, const Visit& visit) { return personOf(visit, request.matches[1]); })},
+        {"GET", "/attempts/([0-9a-f]{32})",
+         Shown([](const Request& request, const Visit& visit) { return attemptOf(visit, request.matches[1]); })},
+        {"GET", "/attempts/([0-9a-f]{32})/result", Shown([of](const Request& request, const Visit& visit) {
+             return resultOf(visit, request.matches[1], [of](const school::Books& books, const std::string& hash) {
+                 return of->tasks.of(books, hash);
+             });
+         })},
+    };
+}
+
+}  // namespace handpiece::school_server

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// The table of what a server answers: a room of it in a source of its own (*_routes.cpp), all of them in
+/// Server::routes().
+
+#include <functional>
+#include <variant>
+#include <vector>
+
+#include "school/http.h"
+#include "school/pages.h"
+#include "school/service.h"
+
+namespace handpiece::school_server {
+
+using Handler = std::function<void(const httplib::Request&, httplib::Response&)>;
+using StationHandler = std::function<void(const httplib::Request&, httplib::Response&, const school::Station&)>;
+/// A page for who is logged in. What it may not show it refuses itself (pages.h).
+using Shown = std::function<Page(const httplib::Request&, const Visit&)>;
+
+/// A route and what answers it; who may call is what the answer needs to know.
+struct Entry {
+    const char* method;
+    const char* pattern;
+    std::variant<Handler, StationHandler, Shown> answer;
+    [[nodiscard]] Caller caller() const { return static_cast<Caller>(answer.index()); }
+};
+
+// Of `service`, which may be null where nobody calls them.
+[[nodiscard]] std::vector<Entry> generalRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> stationRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
+
+}  // namespace handpiece::school_server

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// What stations push and ask.
+#include <algorithm>
+#include <span>
+
+#include "handpiece/base/core/engine_revision.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/school/people/secret.h"
+#include "school/answers.h"
+#include "school/routes.h"
+#include "school/wire.h"
+
+namespace handpiece::school_server {
+
+using httplib::Request;
+using httplib::Response;
+
+std::vector<Entry> stationRoutes(Service* of) {
+    using school_wire::toJson;
+    const auto upload = [](const Request& request, const school::Station& station) {
+        return school::Upload{station.id, request.matches[1].str(), numberOf(request, "bytes")};
+    };
+    return {
+        {"POST", "/api/v1/enrol", Handler([of](const Request& request, Response& response) {
+             const school_wire::Enrol enrol = school_wire::enrolFrom(request.body);
+             // A key of 256 bits out of the system's randomness.
+             const school_wire::Enrolled made{school::newId(), school::newSecret()};
+             if (!of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station, made.key,
+                                                 of->clock()))
+                 throw core::Error("this code is not known, was used, or is too old", "",
+                                   "have a new one made: handpiece school code")
+                     .as("code-unknown");
+             answer(response, toJson(made), 201);
+         })},
+        {"GET", "/api/v1/status",
+         StationHandler([of](const Request&, Response& response, const school::Station& station) {
+             school_wire::Status status{HANDPIECE_VERSION, school_wire::kProtocol, core::kEngineRevision, station.id,
+                                        of->books.take()->missingFiles(station.id)};
+             if (status.missing.size() > 200) status.missing.resize(200);
+             answer(response, toJson(status));
+         })},
+        {"GET", "/api/v1/tasks/([0-9A-Za-z._-]{1,64})",
+         StationHandler([of](const Request& request, Response& response, const school::Station&) {
+             const std::string person = request.matches[1];
+             auto open = of->books.take();
+             std::vector<school_wire::Task> tasks;
+             for (const school::SchoolClass& one : open->classes()) {
+                 const std::vector<school::Enrolment> in = open->enrolments(one.id);
+                 if (std::none_of(in.begin(), in.end(), [&](const school::Enrolment& e) {
+                         return e.person == person && e.role == "student";
+                     }))
+                     continue;
+                 for (const school::Assignment& a : open->assignments(one.id))
+                     tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
+             }
+             answer(response, toJson(tasks));
+         })},
+        {"POST", "/api/v1/attempts",
+         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+             school::PushedAttempt pushed = school_wire::attemptFrom(request.body);
+             pushed.station = station.id;
+             pushed.received = of->clock();
+             const bool isNew = of->books.take()->push(pushed);
+             if (isNew) ++of->attempts;
+             answer(response, "{}", isNew ? 201 : 200);
+         })},
+        {"POST", "/api/v1/judgements",
+         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+             const school::Judgement judgement = school_wire::judgementFrom(request.body);
+             auto open = of->books.take();
+             // Of its own attempts only.
+             const auto attempt = open->attempt(judgement.attempt);
+             if (attempt && attempt->station != station.id)
+                 throw core::Error("this attempt is another station's", "", "enrol the station anew")
+                     .as("books-unknown", {"attempt", judgement.attempt});
+             answer(response, "{}", open->push(judgement) ? 201 : 200);
+         })},
+        {"GET", "/api/v1/files/([0-9a-f]{64})",
+         StationHandler([of, upload](const Request& request, Response& response, const school::Station& station) {
+             const school::Upload file = upload(request, station);
+             const std::uint64_t there = of->books.take()->received(file, of->clock());
+             answer(response, toJson(school_wire::Received{there, there == file.bytes}));
+         })},
+        {"PUT", "/api/v1/files/([0-9a-f]{64})",
+         StationHandler([of, upload](const Request& request, Response& response, const school::Station& station) {
+             const school::Upload file = upload(request, station);
+             const std::uint64_t offset = numberOf(request, "offset");
+             const bool isWhole =
+                 of->books.take()->append(file, offset, std::as_bytes(std::span(request.body)), of->clock());
+             of->bytes += request.body.size();
+             answer(response, toJson(school_wire::Received{offset + request.body.size(), isWhole}));
+         })},
+    };
+}
+
+}  // namespace handpiece::school_server

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/visit.h"
+
+#include "handpiece/base/config/words.h"
+#include "handpiece/school/people/secret.h"
+
+namespace handpiece::school_server {
+
+using school::Action;
+using school::Books;
+using school::Relation;
+using school::Role;
+
+std::vector<Role> rolesOf(const school::Person& person) {
+    std::vector<Role> roles;
+    for (const std::string& name : person.roles)
+        if (const auto role = school::roleOf(name)) roles.push_back(*role);
+    return roles;
+}
+
+std::optional<Role> roleIn(const Books& books, const std::string& schoolClass, const std::string& person) {
+    for (const school::Enrolment& one : books.enrolments(schoolClass))
+        if (one.person == person) return school::roleOf(one.role);
+    return {};
+}
+
+report::Looker lookerOf(const Visit& v) {
+    return {v.person.code, v.person.name, school::requestTokenOf(v.token)};
+}
+
+Relation relationToClass(const Visit& v, const std::string& schoolClass) {
+    Relation relation;
+    relation.inClass = roleIn(v.books, schoolClass, v.person.code);
+    return relation;
+}
+
+Relation relationTo(const Visit& v, const school::PushedAttempt& p) {
+    Relation relation;
+    relation.isOwn = p.person == v.person.code;
+    if (p.assignment.empty()) {
+        relation.isPrivate = !relation.isOwn && !v.books.isShared(p.attempt.id);
+        // Shared practice is seen by the teachers of one's classes; of one's own and of what is private no class
+        // decides.
+        if (relation.isOwn || relation.isPrivate) return relation;
+        for (const school::SchoolClass& one : v.books.classes())
+            if (roleIn(v.books, one.id, p.person) == Role::student)
+                if (const auto role = roleIn(v.books, one.id, v.person.code); role && role != Role::student)
+                    relation.inClass = role;
+    } else if (const auto assignment = v.books.assignment(p.assignment)) {
+        relation.inClass = roleIn(v.books, assignment->schoolClass, v.person.code);
+    }
+    return relation;
+}
+
+bool may(const Visit& v, Action action, const Relation& relation) {
+    const std::vector<Role> roles = rolesOf(v.person);
+    return school::may(roles, action, relation);
+}
+
+report::Names namesFor(const Visit& v, const Relation& relation, const std::string& person) {
+    report::Names names{{v.person.code, v.person.name}};
+    if (may(v, Action::seeName, relation))
+        if (const auto one = v.books.person(person)) names[person] = one->name;
+    return names;
+}
+
+void noteLook(const Visit& v, const char* what, const std::string& about, const std::string& detail) {
+    v.books.note({v.person.code, v.now}, what, about, detail);
+}
+
+Page notYours() {
+    return refused(config::words()("school.not-yours"), 403);
+}
+
+}  // namespace handpiece::school_server

@@ -9,6 +9,7 @@
 
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
+#include "school/picture_shelf.h"
 #include "school/server.h"
 #include "school/task_shelf.h"
 
@@ -23,6 +24,7 @@ struct Service {
     const Clock clock;
     BooksPool books;
     TaskShelf tasks;
+    PictureShelf pictures;
     std::mutex guessing;
     school::Throttle throttle;  ///< guarded by `guessing`
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};

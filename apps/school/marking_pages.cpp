@@ -111,17 +111,18 @@ Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fie
         for (const std::string& id : marking::askedOf(of.rubric)) {
             const auto mark = sheet.marks.find(id);
             if (mark == sheet.marks.end()) continue;
-            rows.push_back({id == marking::kTotal ? words()("agreement.all-points")
-                                                  : report::criterionTitle(of.rubric, id),
-                            mark->second.cannotTell ? words()("school-teaching.cannot-tell")
-                            : mark->second.points   ? fmt::format("{:g}", *mark->second.points)
-                                                    : report::bandTitle(of.rubric, mark->second.band),
-                            fieldOf(typed, "c." + id)});
+            rows.push_back(
+                {id == marking::kTotal ? words()("agreement.all-points") : report::criterionTitle(of.rubric, id),
+                 mark->second.cannotTell ? words()("school-teaching.cannot-tell")
+                 : mark->second.points   ? fmt::format("{:g}", *mark->second.points)
+                                         : report::bandTitle(of.rubric, mark->second.band),
+                 fieldOf(typed, "c." + id)});
         }
         rows.push_back({words()("class.verdict"), verdictText(sheet.verdict), fieldOf(typed, "comment")});
         if (sheet.rating > 0) rows.push_back({words()("school-teaching.rating"), ratingWord(sheet.rating), ""});
-        page.table({words()("assessment.criterion"), words()("school-teaching.mark"), words()("school-teaching.comment")},
-                   rows);
+        page.table(
+            {words()("assessment.criterion"), words()("school-teaching.mark"), words()("school-teaching.comment")},
+            rows);
     } else {
         report::Form form{at(of.assignment.id, "/marking/" + code), {report::tokenField(lookerOf(v))}, {}};
         for (report::FormField& field : sheetFields(of.rubric, typed, wrong))
@@ -153,8 +154,7 @@ std::string said(const rubric::Rubric& rubric, const marking::ReturnedMarks& mar
 Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAttempt& attempt, const Fields& typed,
                       const std::map<std::string, std::string>& wrong, const TaskOf& taskOf, PictureShelf& pictures) {
     const Teaching teaching(v.books);
-    const Settled settled =
-        settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(of.assignment.id));
+    const Settled settled = settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(of.assignment.id));
     HtmlReport page =
         report::sitePage(words()("school-teaching.adjudicate-title", attempt.attempt.id.substr(0, 6)), lookerOf(v));
     page.link(at(of.assignment.id, "/marks"), words()("school-teaching.back-to-marks", of.assignment.title));
@@ -249,8 +249,7 @@ bool marksBlindStill(const Visit& v, const std::string& assignment) {
 ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt) {
     const Teaching teaching(v.books);
     if (!teaching.isReleased(attempt.attempt.id)) return {};
-    const Settled settled =
-        settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(attempt.assignment));
+    const Settled settled = settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(attempt.assignment));
     if (!settled.final) return {};
     ReleasedMarks released{{*settled.final}, {}};
     released.marks.front().marker = words()("school-teaching.school");
@@ -258,8 +257,7 @@ ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt
         settled.adjudication ? std::vector<school::Mark>{*settled.adjudication} : settled.markers;
     const auto text = v.books.assignment(attempt.assignment);
     const auto version = text ? v.books.rubric(text->rubric) : std::nullopt;
-    const rubric::Rubric rubric =
-        version ? rubric::parseRubric(version->text, version->id) : rubric::Rubric{};
+    const rubric::Rubric rubric = version ? rubric::parseRubric(version->text, version->id) : rubric::Rubric{};
     for (const school::Mark& mark : from)
         for (const marking::Comment& one : marking::parseReturned(mark.marks, "the books").comments)
             released.comments.push_back({{},
@@ -302,8 +300,9 @@ Page markingOfClass(const Visit& v, const std::string& schoolClass) {
         std::size_t in = 0;
         for (const school::MarkingSheet& sheet : teaching.sheets(a.id, v.person.code))
             in += sheet.isIn ? 1 : 0;
-        std::vector<Cell> row{{a.title, at(a.id, "/marking")},
-                              {desk ? words()("school-teaching.in-of", in, all) : words()("school-teaching.not-begun")}};
+        std::vector<Cell> row{
+            {a.title, at(a.id, "/marking")},
+            {desk ? words()("school-teaching.in-of", in, all) : words()("school-teaching.not-begun")}};
         if (seesMarks) row.push_back({words()("school-teaching.all-marks"), at(a.id, "/marks")});
         rows.push_back(std::move(row));
     }
@@ -335,7 +334,7 @@ Page deskOf(const Visit& v, const std::string& assignment) {
         const bool isIn = sheet != sheets.end() && sheet->second.isIn;
         in += isIn ? 1 : 0;
         rows.push_back({{item.code, at(assignment, "/marking/" + item.code)},
-                        {isIn                     ? words()("school-teaching.given-in")
+                        {isIn                    ? words()("school-teaching.given-in")
                          : sheet != sheets.end() ? words()("school-teaching.half")
                                                  : words()("school-teaching.open")}});
     }
@@ -348,8 +347,8 @@ Page deskOf(const Visit& v, const std::string& assignment) {
     }
     std::size_t waiting = 0;
     for (const std::string& id : teaching.worksOf(assignment)) {
-        const bool isThere = std::any_of(items.begin(), items.end(),
-                                         [&](const marking::DeskItem& item) { return item.workId == id; });
+        const bool isThere =
+            std::any_of(items.begin(), items.end(), [&](const marking::DeskItem& item) { return item.workId == id; });
         const auto attempt = v.books.attempt(id);
         waiting += !isThere && attempt && attempt->person != v.person.code ? 1 : 0;
     }
@@ -453,18 +452,19 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
         for (const std::string& marker : markers) {
             const auto mark = std::find_if(settled.markers.begin(), settled.markers.end(),
                                            [&](const school::Mark& one) { return one.marker == marker; });
-            row.push_back({mark == settled.markers.end()
-                               ? "\u2013"
-                               : fmt::format("{}, {}", pointsText(mark->points, mark->maxPoints),
-                                             verdictText(mark->verdict))});
+            row.push_back(
+                {mark == settled.markers.end()
+                     ? "\u2013"
+                     : fmt::format("{}, {}", pointsText(mark->points, mark->maxPoints), verdictText(mark->verdict))});
         }
         row.push_back({settled.markers.size() > 1 ? fmt::format("{:.1f} %", settled.differencePercent) : "\u2013"});
         if (settled.needsAdjudication)
             row.push_back({words()("school-teaching.to-adjudicate"), "/attempts/" + id + "/adjudication"});
         else
-            row.push_back({settled.final ? fmt::format("{}, {}", pointsText(settled.final->points, settled.final->maxPoints),
-                                                       verdictText(settled.final->verdict))
-                                         : "\u2013"});
+            row.push_back({settled.final
+                               ? fmt::format("{}, {}", pointsText(settled.final->points, settled.final->maxPoints),
+                                             verdictText(settled.final->verdict))
+                               : "\u2013"});
         row.push_back({released.contains(id) ? words()("school-teaching.yes") : words()("school-teaching.no")});
         settledCount += settled.final ? 1 : 0;
         open += settled.needsAdjudication ? 1 : 0;
@@ -473,9 +473,9 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
     if (rows.empty())
         page.paragraph(words()("school-teaching.no-works"), Tone::missing);
     else
-        page.linkedTable(header, rows,
-                         words()("school-teaching.marks-about", settledCount, rows.size(), open,
-                                 fmt::format("{:g}", allowed)));
+        page.linkedTable(
+            header, rows,
+            words()("school-teaching.marks-about", settledCount, rows.size(), open, fmt::format("{:g}", allowed)));
     const report::FormField token = report::tokenField(lookerOf(v));
     page.heading(words()("school-teaching.release-heading"));
     page.paragraph(words()("school-teaching.release-about"), Tone::note);
@@ -590,8 +590,10 @@ Page agreementOf(const Visit& v, const std::string& assignment) {
         page.heading(c.title);
         std::vector<std::vector<std::string>> rows;
         for (const assessment::RaterPair& p : c.pairs) {
-            std::string kappa = p.linear ? estimate(*p.linear) : p.kappa ? estimate(*p.kappa) : "\u2013", bias = "\u2013",
-                        limits = "\u2013";
+            std::string kappa = p.linear  ? estimate(*p.linear)
+                                : p.kappa ? estimate(*p.kappa)
+                                          : "\u2013",
+                        bias = "\u2013", limits = "\u2013";
             if (p.blandAltman && p.blandAltman->bias) bias = fmt::format("{:+.2f}", *p.blandAltman->bias);
             if (p.blandAltman && p.blandAltman->low)
                 limits = fmt::format("{:.2f} \u2013 {:.2f}", *p.blandAltman->low, *p.blandAltman->high);

@@ -36,7 +36,10 @@ Page classOf(const Visit& v, const std::string& id) {
         for (const school::Person& student : page.students)
             names[student.code] = student.name;
     noteLook(v, "class seen", "", id);
-    return {200, report::classPage(lookerOf(v), page, names)};
+    std::vector<report::HtmlReport::Cell> rooms;
+    if (may(v, Action::markBlind, relation))
+        rooms.push_back({words()("school-teaching.marking"), "/classes/" + id + "/marking"});
+    return {200, report::classPage(lookerOf(v), page, names, rooms)};
 }
 
 Page personOf(const Visit& v, const std::string& code) {

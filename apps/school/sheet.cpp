@@ -75,9 +75,7 @@ std::string ratingWord(int rating) {
 
 Sheet readSheet(const rubric::Rubric& rubric, const Fields& fields) {
     Sheet sheet;
-    const auto wrong = [&](const std::string& field, std::string what) {
-        sheet.wrong.emplace(field, std::move(what));
-    };
+    const auto wrong = [&](const std::string& field, std::string what) { sheet.wrong.emplace(field, std::move(what)); };
     for (const std::string& id : marking::askedOf(rubric)) {
         const std::string field = "m." + id, typed = trimmed(fieldOf(fields, field));
         marking::Mark mark;
@@ -86,8 +84,9 @@ Sheet readSheet(const rubric::Rubric& rubric, const Fields& fields) {
         } else if (typed.empty()) {
             const std::optional<double> sum = id == kTotal ? sumOf(rubric, sheet.marks) : std::nullopt;
             if (!sum) {
-                wrong(field, takesBand(rubric, id) ? words()("school-teaching.choose-one")
-                                                   : words()("school-teaching.give-points", marking::mostOf(rubric, id)));
+                wrong(field, takesBand(rubric, id)
+                                 ? words()("school-teaching.choose-one")
+                                 : words()("school-teaching.give-points", marking::mostOf(rubric, id)));
                 continue;
             }
             mark.points = std::min(*sum, marking::mostOf(rubric, id));
@@ -157,10 +156,9 @@ std::vector<report::FormField> sheetFields(const rubric::Rubric& rubric, const F
         field({}, {}, "end");
     }
     field({}, words()("school-teaching.whole-work"), "group");
-    field("verdict", words()("class.verdict"), "radio").choices = {
-        {"yes", words()("assessment.passed")},
-        {"no", words()("assessment.not-passed")},
-        {"teacher", words()("school-teaching.cannot-tell")}};
+    field("verdict", words()("class.verdict"), "radio").choices = {{"yes", words()("assessment.passed")},
+                                                                   {"no", words()("assessment.not-passed")},
+                                                                   {"teacher", words()("school-teaching.cannot-tell")}};
     report::FormField& rating = field("rating", words()("school-teaching.rating"), "radio");
     rating.hint = words()("school-teaching.rating-hint");
     for (int i = 1; i <= kMostRating; ++i)
@@ -211,8 +209,8 @@ school::Mark markOf(const Sheet& sheet, const rubric::Rubric& rubric, const std:
         if (const auto mark = sheet.marks.find(c.id); mark != sheet.marks.end() && !mark->second.cannotTell)
             told.changes.push_back({c.id, mark->second.band, pointsOf(c, mark->second), c.weight, false, {}});
     told.comments = sheet.comments;
-    return {id,         attempt.attempt.id, marker, kind, sheet.verdict, told.score, told.maxScore,
-            marking::returnedJson(told), now};
+    return {id, attempt.attempt.id, marker, kind, sheet.verdict, told.score, told.maxScore, marking::returnedJson(told),
+            now};
 }
 
 Settled settle(std::span<const school::Mark> marks, double allowedPercent) {

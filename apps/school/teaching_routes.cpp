@@ -31,7 +31,8 @@ std::vector<Entry> teachingRoutes(Service* of) {
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/marks", Shown([](const Request& request, const Visit& visit) {
              return changeMarks(visit, request.matches[1], request.params);
          })},
-        {"GET", "/attempts/([0-9a-f]{32})/adjudication", Shown([of, taskOf](const Request& request, const Visit& visit) {
+        {"GET", "/attempts/([0-9a-f]{32})/adjudication",
+         Shown([of, taskOf](const Request& request, const Visit& visit) {
              return adjudicationOf(visit, request.matches[1], taskOf, of->pictures);
          })},
         {"POST", "/attempts/([0-9a-f]{32})/adjudication",

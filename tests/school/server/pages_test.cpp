@@ -159,7 +159,8 @@ TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
         ++tried;
     EXPECT_EQ(tried, 5);
     EXPECT_EQ(browser.logIn("t1"), 429) << "the right one waits too";
-    EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body, HasSubstr("Try again in"));
+    EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body,
+                HasSubstr("Try again in"));
     EXPECT_TRUE(browser.cookie().empty());
 }
 

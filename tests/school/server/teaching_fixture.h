@@ -53,10 +53,10 @@ class TeachingTest : public SchoolTest {
         const auto person = [&](std::string code, const char* name, const char* role) {
             return school::Person{code, name, code, "", hash, {role}, 1, 0};
         };
-        std::vector<school::Person> people{
-            person("t1", "Dr. Sato", "teacher"), person("t2", "Dr. Other", "teacher"), person("e1", "Dr. Exa", "examiner"),
-            person("a1", "Admin", "administrator")};
-        std::vector<school::Enrolment> enrolments{{"c1", "t1", "teacher"}, {"c1", "e1", "examiner"}, {"c2", "t2", "teacher"}};
+        std::vector<school::Person> people{person("t1", "Dr. Sato", "teacher"), person("t2", "Dr. Other", "teacher"),
+                                           person("e1", "Dr. Exa", "examiner"), person("a1", "Admin", "administrator")};
+        std::vector<school::Enrolment> enrolments{
+            {"c1", "t1", "teacher"}, {"c1", "e1", "examiner"}, {"c2", "t2", "teacher"}};
         for (std::size_t i = 0; i < kStudents; ++i) {
             people.push_back(person(fmt::format("w{}", i), fmt::format("Name{}", i).c_str(), "student"));
             enrolments.push_back({"c1", people.back().code, "student"});
@@ -70,9 +70,9 @@ class TeachingTest : public SchoolTest {
         marked_ = rubric::hashText(rubric::hashOf(marked));
         exercise_ = rubric::hashText(tasks::contentHash(blockTask()));
         open.add(school::RubricVersion{marked_, marked.id, kMarkedRubric, 1, 1}, act);
-        open.add(school::Assignment{"as1", "c1", exercise_, marked_, "Block & hole", "practice", "", 1,
-                                    4'000'000'000'000},
-                 act);
+        open.add(
+            school::Assignment{"as1", "c1", exercise_, marked_, "Block & hole", "practice", "", 1, 4'000'000'000'000},
+            act);
         EXPECT_TRUE(open.enrolStation(kCode, station_, std::string(64, 'd'), 2));
         const std::vector<std::byte> bytes = core::readFile(session());
         (void)open.append({station_, school::sha256Of(session()), bytes.size()}, 0, bytes, 3);

@@ -14,7 +14,7 @@ using testing::Not;
 using testing::SizeIs;
 
 httplib::Params sheetOf(const char* points, const char* band, const char* verdict, const char* rating) {
-    return {{"m.removed", points}, {"m.amount", band},     {"m.total", ""},    {"verdict", verdict},
+    return {{"m.removed", points}, {"m.amount", band},   {"m.total", ""},     {"verdict", verdict},
             {"rating", rating},    {"c.removed", "<b>"}, {"comment", "even"}, {"do", "give"}};
 }
 
@@ -49,7 +49,8 @@ TEST_F(TeachingTest, MarkersMarkBlindAndHalfMarksWait) {
                 HasSubstr("not given in yet"));
     EXPECT_THAT(examiner.get(at)->body, AllOf(HasSubstr("value=\"3,x&quot;&lt;\""), HasSubstr("why?")));
     // What is wrong is said beside each field, and nothing typed is lost.
-    const auto wrong = examiner.send(at, {{"m.removed", "7"}, {"m.amount", "good"}, {"comment", "kept?"}, {"do", "give"}});
+    const auto wrong =
+        examiner.send(at, {{"m.removed", "7"}, {"m.amount", "good"}, {"comment", "kept?"}, {"do", "give"}});
     EXPECT_EQ(wrong->status, 422);
     EXPECT_THAT(wrong->body, AllOf(HasSubstr("Give 0 to 6 points"), HasSubstr("value=\"7\""), HasSubstr("kept?"),
                                    HasSubstr("aria-invalid"), HasSubstr("Choose one.")));
@@ -98,7 +99,8 @@ TEST_F(TeachingTest, MarkersWhoDifferAreAdjudicatedAndStudentsSeeWhatIsReleased)
         EXPECT_EQ(examiner.send("/assignments/as1/marking/" + code, sheetOf("5", "good", "yes", "4"))->status, 303);
     // Who has works open sees nobody's marks.
     const std::string path = "/attempts/" + attempts_[1] + "/adjudication";
-    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body, AllOf(HasSubstr("once all of yours are in"), Not(HasSubstr("9.0"))));
+    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body,
+                AllOf(HasSubstr("once all of yours are in"), Not(HasSubstr("9.0"))));
     EXPECT_EQ(teacher.get(path)->status, 403);
     EXPECT_THAT(teacher.get("/attempts/" + attempts_[1])->body, HasSubstr("Nobody has marked"));
     Books open(data());
@@ -108,14 +110,16 @@ TEST_F(TeachingTest, MarkersWhoDifferAreAdjudicatedAndStudentsSeeWhatIsReleased)
         EXPECT_EQ(teacher.send("/assignments/as1/marking/" + code, sheetOf("4", "good", "yes", "4"))->status, 303);
     }
     // 9 against 8 of 10: as far as they may; under 5 % all are to be adjudicated.
-    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body, AllOf(HasSubstr("6 of 6 works are settled"), HasSubstr("8.5 / 10.0")));
+    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body,
+                AllOf(HasSubstr("6 of 6 works are settled"), HasSubstr("8.5 / 10.0")));
     EXPECT_EQ(teacher.send("/assignments/as1/marks", {{"do", "difference"}, {"percent", "x"}})->status, 422);
     EXPECT_EQ(teacher.send("/assignments/as1/marks", {{"do", "difference"}, {"percent", "5"}})->status, 303);
     EXPECT_THAT(teacher.get("/assignments/as1/marks")->body, HasSubstr("0 of 6 works are settled, 6 wait"));
     EXPECT_EQ(teacher.send(path, {{"m.removed", "5"}})->status, 422);
     httplib::Params word = sheetOf("5", "poor", "no", "2");
     EXPECT_EQ(teacher.send(path, word)->status, 303);
-    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body, AllOf(HasSubstr("1 of 6 works are settled"), HasSubstr("6.0 / 10.0")));
+    EXPECT_THAT(teacher.get("/assignments/as1/marks")->body,
+                AllOf(HasSubstr("1 of 6 works are settled"), HasSubstr("6.0 / 10.0")));
     // The student sees nothing before it is released, then the school's word and no marker's name.
     const std::string own = "/attempts/" + attempts_[1];
     EXPECT_THAT(student.get(own)->body, AllOf(HasSubstr("Nobody has marked"), Not(HasSubstr("even"))));
@@ -129,7 +133,8 @@ TEST_F(TeachingTest, MarkersWhoDifferAreAdjudicatedAndStudentsSeeWhatIsReleased)
     EXPECT_THAT(student.get(own)->body, HasSubstr("Nobody has marked"));
     // Each marker's own repeat, both markers and the machine.
     const std::string agreement = teacher.get("/assignments/as1/agreement")->body;
-    EXPECT_THAT(agreement, AllOf(HasSubstr("machine"), HasSubstr("e1 again"), HasSubstr("ICC(2,1)"), HasSubstr("Amount")));
+    EXPECT_THAT(agreement,
+                AllOf(HasSubstr("machine"), HasSubstr("e1 again"), HasSubstr("ICC(2,1)"), HasSubstr("Amount")));
     // All of it in the audit.
     std::set<std::string> done;
     for (const school::AuditLine& line : open.audit(0, 2000))

@@ -369,10 +369,8 @@ void requireMark(const rubric::Rubric& rubric, const std::string& id, const Mark
 void Desk::setMark(const std::string& code, const std::string& id, const Mark& mark) {
     placeOf(code);
     const std::string where = fmt::format("{}, {}", code, id);
-    if (!state_.isBlind)
-        throw core::Error("this desk shows the machine's score", where, "override it, with a reason");
-    if (sheet(code).isIn)
-        throw core::Error("the mark is in", where, "override the machine's score, with a reason");
+    if (!state_.isBlind) throw core::Error("this desk shows the machine's score", where, "override it, with a reason");
+    if (sheet(code).isIn) throw core::Error("the mark is in", where, "override the machine's score, with a reason");
     if (id != kTotal) static_cast<void>(criterion(id));
     requireMark(setup_.rubric, id, mark, where);
     change([&](DeskState& state) { state.sheets[code].marks[id] = mark; });

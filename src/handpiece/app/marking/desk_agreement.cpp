@@ -40,7 +40,8 @@ std::string marksLines(const std::string& item, const std::string& rater, const 
                        const std::map<std::string, Mark>& marks) {
     std::string out;
     for (const std::string& id : asked)
-        if (const auto mark = marks.find(id); mark != marks.end()) out += csvLine({item, rater, id, told(mark->second)});
+        if (const auto mark = marks.find(id); mark != marks.end())
+            out += csvLine({item, rater, id, told(mark->second)});
     return out;
 }
 
@@ -52,8 +53,8 @@ std::string machineLines(const std::string& item, const rubric::Rubric& rubric, 
             out += csvLine({item, kMachine, a.criteria[i].id, told(rubric.criteria[i], a.criteria[i])});
     // Of all points, as the marker's: a score of part of them would be another scale.
     if (!asked.empty() && asked.back() == kTotal)
-        out += csvLine(
-            {item, kMachine, kTotal, a.maxScore == a.wholeScore ? fmt::format("{}", a.score) : std::string()});
+        out +=
+            csvLine({item, kMachine, kTotal, a.maxScore == a.wholeScore ? fmt::format("{}", a.score) : std::string()});
     return out;
 }
 

@@ -234,9 +234,9 @@ void HtmlReport::place(std::string_view id, std::string_view without) {
 }
 
 void HtmlReport::progress(double done, double all, std::string_view words) {
-    body_ += fmt::format(
-        "<p role=\"status\"><progress max=\"{0}\" value=\"{1}\" aria-label=\"{2}\"></progress> {2}</p>\n", all, done,
-        escaped(words));
+    body_ +=
+        fmt::format("<p role=\"status\"><progress max=\"{0}\" value=\"{1}\" aria-label=\"{2}\"></progress> {2}</p>\n",
+                    all, done, escaped(words));
 }
 
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {

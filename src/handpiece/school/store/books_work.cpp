@@ -272,17 +272,17 @@ bool Books::State::push(const Mark& m, const Act& act) {
         throw invalid("kind of mark", m.kind, "send teacher, examiner, blind or adjudication");
     requireAttempt(m.attempt);
     requirePerson(m.marker);
-    const bool isNew = any(
-        "INSERT INTO marks (id, attempt, marker, kind, verdict, points, max_points, marks, "
-        "made) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING "
-        "RETURNING id",
-        m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made);
+    const bool isNew =
+        any("INSERT INTO marks (id, attempt, marker, kind, verdict, points, max_points, marks, "
+            "made) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING "
+            "RETURNING id",
+            m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made);
     if (isNew)
         note(act, "mark", m.attempt, m.kind);
     else if (!any("SELECT 1 FROM marks WHERE id = $1 AND attempt = $2 AND marker = $3 AND kind = $4 AND "
-                          "verdict = $5 AND points = CAST($6 AS FLOAT8) AND max_points = CAST($7 AS FLOAT8) AND "
-                          "marks = $8 AND made = $9",
-                          m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made))
+                  "verdict = $5 AND points = CAST($6 AS FLOAT8) AND max_points = CAST($7 AS FLOAT8) AND "
+                  "marks = $8 AND made = $9",
+                  m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made))
         throw changed(*database, "mark", m.id);
     return isNew;
 }

@@ -29,8 +29,7 @@ std::uint64_t seedOf(const std::string& hex) {
 }  // namespace
 
 void Teaching::requireAssignment(const std::string& id) const {
-    if (!state_.any("SELECT 1 FROM assignments WHERE id = $1", id))
-        throw unknown(*state_.database, "assignment", id);
+    if (!state_.any("SELECT 1 FROM assignments WHERE id = $1", id)) throw unknown(*state_.database, "assignment", id);
 }
 
 // Exercises, rubrics, assignments.
@@ -223,11 +222,11 @@ void Teaching::release(std::span<const std::string> attempts, bool released, con
     Transaction transaction(*state_.database);
     for (const std::string& id : attempts) {
         state_.requireAttempt(id);
-        const bool moved =
-            released ? state_.any("INSERT INTO releases (attempt, made) VALUES ($1, $2) ON CONFLICT DO NOTHING "
-                                  "RETURNING attempt",
-                                  id, act.at)
-                     : state_.any("DELETE FROM releases WHERE attempt = $1 RETURNING attempt", id);
+        const bool moved = released ? state_.any(
+                                          "INSERT INTO releases (attempt, made) VALUES ($1, $2) ON CONFLICT DO NOTHING "
+                                          "RETURNING attempt",
+                                          id, act.at)
+                                    : state_.any("DELETE FROM releases WHERE attempt = $1 RETURNING attempt", id);
         if (moved) state_.note(act, released ? "release marks" : "take back marks", id);
     }
     transaction.commit();
@@ -266,8 +265,8 @@ void Teaching::add(const Campaign& c, const Act& act) {
 
 std::vector<Campaign> Teaching::campaigns(const std::string& assignment) const {
     std::vector<Campaign> all;
-    Statement rows = state_.ask(fmt::format("{}WHERE assignment = $1 ORDER BY made, id", kCampaignFields).c_str(),
-                                assignment);
+    Statement rows =
+        state_.ask(fmt::format("{}WHERE assignment = $1 ORDER BY made, id", kCampaignFields).c_str(), assignment);
     while (rows.next())
         all.push_back(campaignOf(rows));
     return all;
@@ -388,8 +387,7 @@ std::vector<KeptStandard> Teaching::standards(const std::string& assignment) con
         "SELECT id, assignment, method, content, who, made FROM standards WHERE assignment = $1 ORDER BY made, id",
         assignment);
     while (rows.next())
-        all.push_back(
-            {rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.integer(5)});
+        all.push_back({rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4), rows.integer(5)});
     return all;
 }
 

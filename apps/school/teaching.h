@@ -4,6 +4,11 @@
 /// A teacher's pages by address: marking, rubrics, re-scoring, exercises, results, standards, exemplars. Who may see
 /// which is looked at in each. No HTTP here. docs/school-teaching.md.
 
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "handpiece/assess/rubric/rubric.h"
 #include "school/pages.h"
 #include "school/picture_shelf.h"
 #include "school/sheet.h"
@@ -55,5 +60,29 @@ struct Told {
 [[nodiscard]] Page adjudicate(const Visit& visit, const std::string& attempt, const Fields& fields,
                               const TaskOf& taskOf, PictureShelf& pictures);
 [[nodiscard]] Page agreementOf(const Visit& visit, const std::string& assignment);
+
+// Rubrics and re-scoring.
+[[nodiscard]] Page rubricsOf(const Visit& visit);
+[[nodiscard]] Page rubricOf(const Visit& visit, const std::string& hash);
+[[nodiscard]] Page editRubric(const Visit& visit, const std::string& hash);
+/// What came as a form ("of": whose fields they are) or as TOML (`text`): what is wrong with it, or what it changes.
+/// Nothing is kept.
+[[nodiscard]] Page checkRubric(const Visit& visit, const Fields& fields, const std::string& text);
+/// A version of its own.
+[[nodiscard]] Page saveRubric(const Visit& visit, const Fields& fields);
+[[nodiscard]] Page rescoreOf(const Visit& visit, const std::string& assignment, const Told& told = {});
+/// Field "do": "begin", "again", "count".
+[[nodiscard]] Page changeScores(const Visit& visit, const std::string& assignment, const Fields& fields);
+
+// Exercises and assignments.
+[[nodiscard]] Page exercisesOf(const Visit& visit, const Told& told = {});
+/// `file`: the bytes of a .handpiece file.
+[[nodiscard]] Page addExercise(const Visit& visit, const std::string& file);
+[[nodiscard]] Page exerciseOf(const Visit& visit, const std::string& hash, const TaskOf& taskOf);
+/// All that there is of one assignment, for whom.
+[[nodiscard]] Page assignmentOf(const Visit& visit, const std::string& assignment, const Told& told = {});
+[[nodiscard]] Page setTimes(const Visit& visit, const std::string& assignment, const Fields& fields);
+[[nodiscard]] Page assignmentsOf(const Visit& visit, const std::string& schoolClass);
+[[nodiscard]] Page assign(const Visit& visit, const std::string& schoolClass, const Fields& fields);
 
 }  // namespace handpiece::school_server

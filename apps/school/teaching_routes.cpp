@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A teacher's work in the browser.
+#include "school/answers.h"
+#include "school/library.h"
 #include "school/routes.h"
 #include "school/teaching.h"
 
 namespace handpiece::school_server {
+
+/// What a form puts around a file.
+constexpr std::size_t kAroundFiles = 64u << 10;
 
 std::vector<Entry> teachingRoutes(Service* of) {
     using httplib::Request;
@@ -41,6 +46,38 @@ std::vector<Entry> teachingRoutes(Service* of) {
          })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/agreement",
          Shown([](const Request& request, const Visit& visit) { return agreementOf(visit, request.matches[1]); })},
+        {"GET", "/rubrics", Shown([](const Request&, const Visit& visit) { return rubricsOf(visit); })},
+        {"GET", "/rubrics/([0-9a-f]{16})",
+         Shown([](const Request& request, const Visit& visit) { return rubricOf(visit, request.matches[1]); })},
+        {"GET", "/rubrics/([0-9a-f]{16})/edit",
+         Shown([](const Request& request, const Visit& visit) { return editRubric(visit, request.matches[1]); })},
+        {"POST", "/rubrics/check", Shown([](const Request& request, const Visit& visit) {
+             return checkRubric(visit, request.params, sentBy(request, request.has_file("file") ? "file" : "text"));
+         })},
+        {"POST", "/rubrics",
+         Shown([](const Request& request, const Visit& visit) { return saveRubric(visit, request.params); })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/rescore",
+         Shown([](const Request& request, const Visit& visit) { return rescoreOf(visit, request.matches[1]); })},
+        {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/rescore", Shown([](const Request& request, const Visit& visit) {
+             return changeScores(visit, request.matches[1], request.params);
+         })},
+        {"GET", "/exercises", Shown([](const Request&, const Visit& visit) { return exercisesOf(visit); })},
+        {"POST", "/exercises",
+         Shown([](const Request& request, const Visit& visit) { return addExercise(visit, sentBy(request, "file")); }),
+         kMostExercise + kAroundFiles},
+        {"GET", "/exercises/([0-9a-f]{16})", Shown([taskOf](const Request& request, const Visit& visit) {
+             return exerciseOf(visit, request.matches[1], taskOf);
+         })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})",
+         Shown([](const Request& request, const Visit& visit) { return assignmentOf(visit, request.matches[1]); })},
+        {"POST", "/assignments/([0-9A-Za-z._-]{1,64})", Shown([](const Request& request, const Visit& visit) {
+             return setTimes(visit, request.matches[1], request.params);
+         })},
+        {"GET", "/classes/([0-9A-Za-z._-]{1,64})/assignments",
+         Shown([](const Request& request, const Visit& visit) { return assignmentsOf(visit, request.matches[1]); })},
+        {"POST", "/classes/([0-9A-Za-z._-]{1,64})/assignments", Shown([](const Request& request, const Visit& visit) {
+             return assign(visit, request.matches[1], request.params);
+         })},
     };
 }
 

@@ -247,6 +247,13 @@ std::set<std::string> Teaching::released(const std::string& assignment) const {
 
 // Re-scoring.
 
+void Teaching::pin(const std::string& assignment, const Act& act) {
+    state_.run(
+        "INSERT INTO counting (assignment, campaign, first_rubric, made) SELECT id, CAST($1 AS TEXT), rubric, "
+        "CAST($2 AS INT8) FROM assignments WHERE id = $3 ON CONFLICT DO NOTHING",
+        kArrival, act.at, assignment);
+}
+
 void Teaching::add(const Campaign& c, const Act& act) {
     if (c.id.empty() || c.id == kArrival) throw invalid("campaign", c.id, "give it a name of its own");
     Transaction transaction(*state_.database);
@@ -257,8 +264,7 @@ void Teaching::add(const Campaign& c, const Act& act) {
                     "DO NOTHING RETURNING id",
                     c.id, c.assignment, c.rubric, c.who, act.at))
         throw duplicate(*state_.database, "campaign", c.id);
-    state_.run("INSERT INTO counting (assignment, campaign, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-               c.assignment, kArrival, act.at);
+    pin(c.assignment, act);
     state_.note(act, "begin rescore", c.assignment, fmt::format("{} by {}", c.id, c.rubric));
     transaction.commit();
 }
@@ -286,21 +292,17 @@ std::string Teaching::counting(const std::string& assignment) const {
 void Teaching::setCounting(const std::string& assignment, const std::string& campaign, const Act& act) {
     Transaction transaction(*state_.database);
     requireAssignment(assignment);
+    pin(assignment, act);
     std::string rubric;
-    if (campaign == kArrival) {
-        Statement row = state_.ask("SELECT p.rubric FROM packs p JOIN assignments a ON a.pack = p.hash WHERE a.id = $1",
-                                   assignment);
-        if (row.next()) rubric = row.text(0);
-    } else {
+    {
         Statement row =
-            state_.ask("SELECT rubric FROM campaigns WHERE id = $1 AND assignment = $2", campaign, assignment);
+            campaign == kArrival
+                ? state_.ask("SELECT first_rubric FROM counting WHERE assignment = $1", assignment)
+                : state_.ask("SELECT rubric FROM campaigns WHERE assignment = $1 AND id = $2", assignment, campaign);
         if (!row.next()) throw unknown(*state_.database, "campaign", campaign);
         rubric = row.text(0);
     }
-    state_.run(
-        "INSERT INTO counting (assignment, campaign, made) VALUES ($1, $2, $3) ON CONFLICT (assignment) DO UPDATE SET "
-        "campaign = excluded.campaign, made = excluded.made",
-        assignment, campaign, act.at);
+    state_.run("UPDATE counting SET campaign = $1, made = $2 WHERE assignment = $3", campaign, act.at, assignment);
     state_.run("UPDATE assignments SET rubric = $1 WHERE id = $2", rubric, assignment);
     state_.note(act, "set counting", assignment, fmt::format("{} by {}", campaign, rubric));
     transaction.commit();

@@ -132,6 +132,8 @@ class Teaching : private BooksRoom {
 
   private:
     void requireAssignment(const std::string& id) const;
+    /// In a transaction that writes: what counts is written down, unless it is.
+    void pin(const std::string& assignment, const Act& act);
     Books& books_;
 };
 

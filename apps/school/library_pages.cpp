@@ -65,7 +65,8 @@ std::string typedOf(Milliseconds moment) {
 
 std::vector<FormField> timeFields(const Fields& typed, const std::map<std::string, std::string>& wrong) {
     std::vector<FormField> all;
-    for (const auto& [name, label] : {std::pair("opens", "school-teaching.opens"), std::pair("closes", "school-teaching.closes")}) {
+    for (const auto& [name, label] :
+         {std::pair("opens", "school-teaching.opens"), std::pair("closes", "school-teaching.closes")}) {
         FormField one{name, words()(label), "datetime-local", fieldOf(typed, name), words()("school-teaching.utc")};
         if (const auto found = wrong.find(name); found != wrong.end()) one.wrong = found->second;
         one.isRequired = true;
@@ -121,13 +122,14 @@ Page assignmentsPage(const Visit& v, const std::string& schoolClass, const Field
         said({"pack", words()("school.exercise"), "select", fieldOf(typed, "pack"), {}, {}, std::move(packs)}));
     form.fields.push_back(said({"title", words()("school-teaching.title"), "text", fieldOf(typed, "title"),
                                 words()("school-teaching.title-hint")}));
-    form.fields.push_back(said({"kind",
-                                words()("school-teaching.kind"),
-                                "select",
-                                fieldOf(typed, "kind"),
-                                {},
-                                {},
-                                {{"practice", words()("school-teaching.practice")}, {"exam", words()("school-teaching.exam")}}}));
+    form.fields.push_back(
+        said({"kind",
+              words()("school-teaching.kind"),
+              "select",
+              fieldOf(typed, "kind"),
+              {},
+              {},
+              {{"practice", words()("school-teaching.practice")}, {"exam", words()("school-teaching.exam")}}}));
     form.fields.push_back(said({"helps", words()("school-teaching.helps"), "text", fieldOf(typed, "helps"),
                                 words()("school-teaching.helps-hint")}));
     for (FormField& field : timeFields(typed, wrong))
@@ -199,8 +201,9 @@ Page exerciseOf(const Visit& v, const std::string& hash, const TaskOf& taskOf) {
     HtmlReport page = report::sitePage(
         task->toothCase.exercise ? localOf(task->toothCase.exercise->title) : pack->title, lookerOf(v));
     page.link("/exercises", words()("school-teaching.exercises"));
-    if (task->toothCase.exercise) page.paragraph(localOf(task->toothCase.exercise->task));
-    page.facts({}, {{words()("school.exercise"), fmt::format("{}, {} {}", task->id, words()("school-teaching.version"), task->version)},
+    if (task->toothCase.exercise) page.paragraph(localOf(task->toothCase.exercise->instructions));
+    page.facts({}, {{words()("school.exercise"),
+                     fmt::format("{}, {} {}", task->id, words()("school-teaching.version"), task->version)},
                     {words()("school-teaching.tooth"), task->toothCase.name},
                     {words()("school-teaching.level"), task->level},
                     {words()("school-teaching.minutes"), task->minutes ? fmt::format("{:g}", *task->minutes) : ""},
@@ -266,8 +269,8 @@ Page setTimes(const Visit& v, const std::string& assignment, const Fields& field
 Page assignmentsOf(const Visit& v, const std::string& schoolClass) {
     if (!may(v, Action::assign, relationToClass(v, schoolClass))) return notYours();
     constexpr Milliseconds kDays = 86'400'000;
-    return assignmentsPage(v, schoolClass,
-                           {{"opens", typedOf(v.now)}, {"closes", typedOf(v.now + 14 * kDays)}, {"kind", "practice"}}, {});
+    return assignmentsPage(
+        v, schoolClass, {{"opens", typedOf(v.now)}, {"closes", typedOf(v.now + 14 * kDays)}, {"kind", "practice"}}, {});
 }
 
 Page assign(const Visit& v, const std::string& schoolClass, const Fields& fields) {
@@ -277,17 +280,24 @@ Page assign(const Visit& v, const std::string& schoolClass, const Fields& fields
     const auto [opens, closes] = timesIn(fields, wrong);
     const auto pack = v.books.pack(fieldOf(fields, "pack"));
     if (!pack) wrong.emplace("pack", words()("school-teaching.choose-one"));
-    const std::string kind = fieldOf(fields, "kind"), title = fieldOf(fields, "title"), helps = fieldOf(fields, "helps");
+    const std::string kind = fieldOf(fields, "kind"), title = fieldOf(fields, "title"),
+                      helps = fieldOf(fields, "helps");
     if (kind != "practice" && kind != "exam") wrong.emplace("kind", words()("school-teaching.choose-one"));
     if (title.size() > kMostTitle) wrong.emplace("title", words()("school-teaching.too-long", kMostTitle));
     const bool areHelps = helps.size() <= kMostTitle && std::all_of(helps.begin(), helps.end(), [](char c) {
-        return (c >= 'a' && c <= 'z') || c == '-' || c == ' ';
-    });
+                              return (c >= 'a' && c <= 'z') || c == '-' || c == ' ';
+                          });
     if (!areHelps) wrong.emplace("helps", words()("school-teaching.no-helps"));
     if (!wrong.empty()) return assignmentsPage(v, schoolClass, fields, wrong);
-    const school::Assignment made{school::newId(), schoolClass, pack->hash, pack->rubric,
+    const school::Assignment made{school::newId(),
+                                  schoolClass,
+                                  pack->hash,
+                                  pack->rubric,
                                   title.find_first_not_of(' ') == std::string::npos ? pack->title : title,
-                                  kind, helps, opens, closes};
+                                  kind,
+                                  helps,
+                                  opens,
+                                  closes};
     v.books.add(made, actOf(v));
     return {303, {}, "/assignments/" + made.id};
 }

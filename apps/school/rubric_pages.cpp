@@ -127,9 +127,8 @@ class RubricForm {
 
 /// As the form shows it first.
 Fields fieldsOf(const rubric::Rubric& rubric) {
-    Fields fields{{"version", rubric.version},
-                  {"title", localOf(rubric.title)},
-                  {"pass_mark", typedOf(rubric.passMark)}};
+    Fields fields{
+        {"version", rubric.version}, {"title", localOf(rubric.title)}, {"pass_mark", typedOf(rubric.passMark)}};
     if (rubric.completeness) fields.emplace("completeness", typedOf(rubric.completeness->knots));
     for (std::size_t i = 0; i < rubric.criteria.size(); ++i) {
         const rubric::Criterion& c = rubric.criteria[i];
@@ -205,7 +204,8 @@ bool addFindings(HtmlReport& page, const rubric::Rubric& rubric) {
         const char* severity = one.finding.severity == rubric::Severity::error     ? "school-teaching.error"
                                : one.finding.severity == rubric::Severity::warning ? "school-teaching.warning"
                                                                                    : "school-teaching.remark";
-        rows.push_back({words()(severity), one.about.empty() ? words()("school-teaching.rubric-whole") : words()(one.about),
+        rows.push_back({words()(severity),
+                        one.about.empty() ? words()("school-teaching.rubric-whole") : words()(one.about),
                         words()(one.problem), words()(one.remedy)});
     }
     if (!rows.empty())
@@ -251,8 +251,8 @@ Page rubricsOf(const Visit& v) {
     if (rows.empty())
         page.paragraph(words()("school-teaching.no-rubrics"), Tone::missing);
     else
-        page.linkedTable({words()("school-teaching.rubric"), words()("school-teaching.version"),
-                          words()("school.made"), words()("school-teaching.hash")},
+        page.linkedTable({words()("school-teaching.rubric"), words()("school-teaching.version"), words()("school.made"),
+                          words()("school-teaching.hash")},
                          rows, words()("school-teaching.rubrics-about"));
     page.heading(words()("school-teaching.upload-rubric"));
     FormField file{"file", words()("school-teaching.rubric-file"), "file"};
@@ -266,7 +266,8 @@ Page rubricOf(const Visit& v, const std::string& hash) {
     const auto version = v.books.rubric(hash);
     if (!version) return notYours();
     const rubric::Rubric read = rubric::parseRubric(version->text, version->id);
-    HtmlReport page = report::sitePage(words()("school-teaching.rubric-version", version->id, version->version), lookerOf(v));
+    HtmlReport page =
+        report::sitePage(words()("school-teaching.rubric-version", version->id, version->version), lookerOf(v));
     page.link("/rubrics", words()("school-teaching.rubrics"));
     page.link("/rubrics/" + hash + "/edit", words()("school-teaching.edit"));
     page.facts({}, {{words()("school-teaching.hash"), hash},
@@ -291,7 +292,8 @@ Page editRubric(const Visit& v, const std::string& hash) {
     const auto version = v.books.rubric(hash);
     if (!version) return notYours();
     const rubric::Rubric read = rubric::parseRubric(version->text, version->id);
-    HtmlReport page = report::sitePage(words()("school-teaching.edit-version", version->id, version->version), lookerOf(v));
+    HtmlReport page =
+        report::sitePage(words()("school-teaching.edit-version", version->id, version->version), lookerOf(v));
     page.link("/rubrics/" + hash, words()("school-teaching.back-to-rubric"));
     page.paragraph(words()("school-teaching.edit-about"), Tone::note);
     page.heading(words()("school-teaching.as-form"));

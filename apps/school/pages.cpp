@@ -103,6 +103,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
                   report::reviewWaitPage(lookerOf(v), id, answer.progress, answer.isBusy, answer.trouble),
                   {},
                   {}};
+        page.runsScript = true;
         return page;
     }
     if (!relation.isOwn) noteLook(v, "review seen", attempt->person, id);

@@ -10,6 +10,7 @@
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/report/review_page.h"
 #include "handpiece/app/report/school_pages.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -32,9 +33,10 @@ ReviewShelf::~ReviewShelf() {
 
 ReviewShelf::Answer ReviewShelf::ask(const school::PushedAttempt& attempt, const std::vector<school::Score>& scores) {
     // Of another score, or by another program, it is another page.
+    const std::string language = config::words().language();
     const std::string file =
-        fmt::format("{}-{}-{}-{}.html", attempt.attempt.id, scores.empty() ? 0 : scores.back().made,
-                    scores.empty() ? "" : scores.back().rubric, HANDPIECE_VERSION);
+        fmt::format("{}-{}-{}-{}-{}.html", attempt.attempt.id, scores.empty() ? 0 : scores.back().made,
+                    scores.empty() ? "" : scores.back().rubric, language, HANDPIECE_VERSION);
     const fs::path path = folder_ / file;
     std::error_code ec;
     if (fs::is_regular_file(path, ec)) {
@@ -45,9 +47,9 @@ ReviewShelf::Answer ReviewShelf::ask(const school::PushedAttempt& attempt, const
     const std::lock_guard lock(mutex_);
     if (const auto trouble = troubles_.extract(attempt.attempt.id)) return {{}, 0.0, trouble.mapped()};
     for (std::size_t i = 0; i < waiting_.size(); ++i)
-        if (waiting_[i].attempt == attempt.attempt.id) return {{}, i == 0 ? progress_.load() : 0.0};
+        if (waiting_[i].file == path) return {{}, i == 0 ? progress_.load() : 0.0};
     if (waiting_.size() >= kMostWaiting) return {{}, 0.0, {}, true};
-    waiting_.push_back({attempt.attempt.id, path});
+    waiting_.push_back({attempt.attempt.id, language, path});
     if (!thread_.joinable()) thread_ = std::thread([this] { loop(); });
     wake_.notify_all();
     return {};
@@ -65,6 +67,7 @@ void ReviewShelf::loop() {
         }
         std::string trouble;
         try {
+            const config::LanguageHere here(work.language);
             const std::string page = made(work.attempt, [this](double fraction) {
                 progress_ = fraction;
                 return !ends_;
@@ -122,9 +125,8 @@ void ReviewShelf::sweep(const fs::path& keep) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
         std::error_code ec;
         const std::string name = entry.path().filename().string();
-        // What was of another score, and of attempts that are gone from the books.
-        const bool isOlder = entry.path() != keep && name.substr(0, 32) == keep.filename().string().substr(0, 32);
-        if (isOlder || !books->attempt(name.substr(0, 32))) {
+        // Attempts may be gone from the books; what was of another score goes as what nobody asks for.
+        if (!books->attempt(name.substr(0, 32))) {
             fs::remove(entry.path(), ec);
             continue;
         }

@@ -50,7 +50,7 @@ class ReviewShelf {
     TaskShelf& tasks_;
     const std::uintmax_t mostBytes_;
     struct Work {
-        std::string attempt;
+        std::string attempt, language;
         std::filesystem::path file;
     };
     std::mutex mutex_;

@@ -133,5 +133,23 @@ export class LivePage {
     }
 }
 
+/** Asks for this very page until something else stands there. */
+async function waitForIt(/** @type {HTMLElement} */ place) {
+    for (;;) {
+        await new Promise((done) => setTimeout(done, 2 * kPeriodMs));
+        if (document.visibilityState !== "visible") continue;
+        try {
+            const answer = await fetch(location.href, { signal: patience() });
+            const page = new DOMParser().parseFromString(await answer.text(), "text/html"), again = page.getElementById("again");
+            if (!again) return location.reload();
+            if (place.textContent !== again.textContent) place.textContent = again.textContent;
+        } catch {
+            // The server comes back, or the person goes.
+        }
+    }
+}
+
 const list = document.getElementById("live");
 if (list) new LivePage(list).run();
+const again = document.getElementById("again");
+if (again) waitForIt(again);

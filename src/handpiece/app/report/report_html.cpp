@@ -122,11 +122,6 @@ std::string clockText(double timeS) {
     return fmt::format("{}:{:04.1f}", tenths / 600, static_cast<double>(tenths % 600) / 10.0);
 }
 
-std::string refreshOf(bool isLive, int againS) {
-    if (isLive) return "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n";
-    return againS > 0 ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\">\n", againS) : std::string();
-}
-
 bool isNumber(std::string_view cell) {
     constexpr std::size_t kLongest = 24;  // longer: a sentence that starts with a number
     return !cell.empty() && cell.size() <= kLongest &&
@@ -333,11 +328,22 @@ std::string HtmlReport::text() const {
         (hasViewer_ ? "; script-src " + viewerInPolicy() : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n{}"
-        "<style>{}{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
+"
+        "<link rel=\"icon\" href=\"data:,\">
+<title>{}</title>
+{}"
+        "<style>{}{}{}{}{}</style>
+</head>
+<body>
+{}<main id=\"main\">
+{}</main>
+{}{}</body>
+</html>
+",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),
-        escaped(title_), refreshOf(isLive_, againS_), kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
+        escaped(title_), isLive_ ? "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n" : "", kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
         isSite ? kSiteStyle : "", isLive_ ? kLiveStyle : "", site_, body_,
         hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string(), script_);
 }

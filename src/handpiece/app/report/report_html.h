@@ -83,11 +83,9 @@ class HtmlReport {
     void script(std::string_view address, std::string_view json);
     /// A place of its own for a module to draw in, with what stands there without script.
     void place(std::string_view id, std::string_view without);
-    /// A list of a page of a server's that a module keeps up; where none runs the page is loaded again and again.
+    /// What a module of the server keeps up in its page; where none runs the page is loaded again and again.
     /// `html` is escaped where it has to be.
     void live(std::string_view html);
-    /// Shown until something is there: the browser asks again by itself.
-    void loadAgain(int afterS) { againS_ = afterS; }
     /// The page.
     [[nodiscard]] std::string text() const;
 
@@ -95,7 +93,7 @@ class HtmlReport {
     std::string title_, body_, site_, script_;
     std::optional<std::size_t> reviewAt_;
     bool hasViewer_ = false, isLive_ = false;
-    int forms_ = 0, againS_ = 0;  ///< 0: it is not loaded again
+    int forms_ = 0;
 };
 
 /// The script of review() as a content security policy names it: 'sha256-...'.

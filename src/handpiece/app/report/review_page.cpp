@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "handpiece/app/report/plot.h"
 #include "handpiece/base/config/words.h"
 
 namespace handpiece::report {
@@ -31,9 +32,11 @@ std::string reviewWaitPage(const Looker& who, const std::string& attempt, double
         page.paragraph(words()("school-live.no-review", trouble), Tone::bad);
         return page.text();
     }
-    page.paragraph(isBusy ? words()("school-live.review-busy")
-                          : words()("school-live.review-made", fmt::format("{:.0f}", 100.0 * progress)));
-    page.loadAgain(2);
+    page.live(
+        fmt::format("<p id=\"again\" role=\"status\">{}</p>\n",
+                    escaped(isBusy ? words()("school-live.review-busy")
+                                   : words()("school-live.review-made", fmt::format("{:.0f}", 100.0 * progress)))));
+    page.script("/live.js", "{}");
     return page.text();
 }
 

@@ -12,5 +12,7 @@ void addServeCommand(cli::Command& app);
 void addBooksCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
+/// station: a window's own, fed by it; simulate: many stations and browsers at a server of its own.
+void addLiveCommands(cli::Command& app);
 
 }  // namespace handpiece::school_cli

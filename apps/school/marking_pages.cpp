@@ -159,6 +159,7 @@ Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAt
         report::sitePage(words()("school-teaching.adjudicate-title", attempt.attempt.id.substr(0, 6)), lookerOf(v));
     page.link(at(of.assignment.id, "/marks"), words()("school-teaching.back-to-marks", of.assignment.title));
     page.link("/attempts/" + attempt.attempt.id, words()("school-teaching.attempt"));
+    page.link("/attempts/" + attempt.attempt.id + "/review", words()("school-live.review"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
     addPicture(page, v, attempt, of.assignment.pack, taskOf, pictures);
     page.heading(words()("school-teaching.markers-said"));

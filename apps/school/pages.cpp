@@ -8,9 +8,9 @@
 #include "handpiece/app/report/review_page.h"
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
-#include "school/teaching.h"
 #include "handpiece/base/core/file.h"
 #include "school/review_shelf.h"
+#include "school/teaching.h"
 #include "school/visit.h"
 
 namespace handpiece::school_server {

@@ -33,7 +33,7 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> generalRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> stationRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
-[[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 
 }  // namespace handpiece::school_server

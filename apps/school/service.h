@@ -9,8 +9,8 @@
 
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
-#include "school/picture_shelf.h"
 #include "school/live_board.h"
+#include "school/picture_shelf.h"
 #include "school/review_shelf.h"
 #include "school/server.h"
 #include "school/task_shelf.h"
@@ -27,9 +27,9 @@ struct Service {
     const Clock clock;
     BooksPool books;
     TaskShelf tasks;
-    PictureShelf pictures;
     LiveBoard live;
     ReviewShelf reviews;
+    PictureShelf pictures;
     std::mutex guessing;
     school::Throttle throttle;  ///< guarded by `guessing`
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};

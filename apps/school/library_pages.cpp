@@ -234,13 +234,20 @@ Page assignmentOf(const Visit& v, const std::string& assignment, const Told& tol
     const bool isTeacher = may(v, Action::assign, of->relation);
     if (isTeacher) page.link("/classes/" + a.schoolClass + "/assignments", words()("school-teaching.back-to-class"));
     if (!told.text.empty()) page.paragraph(told.text, told.isWrong ? Tone::bad : Tone::good);
-    page.facts({}, {{words()("school-teaching.kind"),
-                     words()(a.kind == "exam" ? "school-teaching.exam" : "school-teaching.practice")},
-                    {words()("school-teaching.opens"), report::momentOf(a.opens) + " UTC"},
-                    {words()("school-teaching.closes"), report::momentOf(a.closes) + " UTC"},
-                    {words()("school-teaching.helps"), a.helps},
-                    {words()("school-teaching.rubric"), fmt::format("{} {}", of->rubric.id, of->rubricHash)}});
+    std::vector<std::pair<std::string, std::string>> facts{
+        {words()("school-teaching.kind"),
+         words()(a.kind == "exam" ? "school-teaching.exam" : "school-teaching.practice")},
+        {words()("school-teaching.opens"), report::momentOf(a.opens) + " UTC"},
+        {words()("school-teaching.closes"), report::momentOf(a.closes) + " UTC"},
+        {words()("school-teaching.helps"), a.helps},
+        {words()("school-teaching.rubric"), fmt::format("{} {}", of->rubric.id, of->rubricHash)},
+        {words()("school-teaching.pass-mark"), of->rubric.passMark ? fmt::format("{:g} %", *of->rubric.passMark) : ""}};
+    for (auto& line : keptStandards(v, assignment))
+        facts.push_back(std::move(line));
+    page.facts({}, facts);
     page.link(at + "/marking", words()("school-teaching.your-desk"));
+    page.link(at + "/exemplars", words()("school-teaching.exemplars"));
+    page.link(at + "/standard", words()("school-teaching.standards"));
     if (!isTeacher) return {200, page.text()};
     page.link(at + "/marks", words()("school-teaching.all-marks"));
     page.link(at + "/agreement", words()("school-teaching.agreement"));

@@ -7,6 +7,11 @@
 
 namespace handpiece::school_server {
 
+/// The address that this was asked at.
+static std::string homeOf(const Service& of, const httplib::Request& request) {
+    return (of.isSecure() ? "https://" : "http://") + request.get_header_value("Host");
+}
+
 /// What a form puts around a file.
 constexpr std::size_t kAroundFiles = 64u << 10;
 
@@ -60,6 +65,45 @@ std::vector<Entry> teachingRoutes(Service* of) {
          Shown([](const Request& request, const Visit& visit) { return rescoreOf(visit, request.matches[1]); })},
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/rescore", Shown([](const Request& request, const Visit& visit) {
              return changeScores(visit, request.matches[1], request.params);
+         })},
+        {"GET", "/classes/([0-9A-Za-z._-]{1,64})/results", Shown([of](const Request& request, const Visit& visit) {
+             return resultsOfClass(visit, request.matches[1], homeOf(*of, request));
+         })},
+        {"GET",
+         "/classes/([0-9A-Za-z._-]{1,64})/export/"
+         "(attempts\\.csv|criteria\\.csv|results\\.zip|statements\\.json|report)",
+         Shown([](const Request& request, const Visit& visit) {
+             return exportOfClass(visit, request.matches[1], request.matches[2], request.get_param_value("home"));
+         })},
+        {"GET", "/people/([0-9A-Za-z._-]{1,64})/curves", Shown([of](const Request& request, const Visit& visit) {
+             return curvesOf(visit, request.matches[1], homeOf(*of, request));
+         })},
+        {"GET", "/people/([0-9A-Za-z._-]{1,64})/export/(attempts\\.csv|criteria\\.csv|results\\.zip|statements\\.json)",
+         Shown([](const Request& request, const Visit& visit) {
+             return exportOfPerson(visit, request.matches[1], request.matches[2], request.get_param_value("home"));
+         })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/standard", Shown([](const Request& request, const Visit& visit) {
+             return standardOf(visit, request.matches[1], request.has_param("all"));
+         })},
+        {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/standard", Shown([](const Request& request, const Visit& visit) {
+             return changeStandard(visit, request.matches[1], request.params);
+         })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars",
+         Shown([](const Request& request, const Visit& visit) { return exemplarsOf(visit, request.matches[1]); })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars/([0-9]{1,3})",
+         Shown([of, taskOf](const Request& request, const Visit& visit) {
+             return calibrationOf(visit, request.matches[1], std::stoul(request.matches[2]), taskOf, of->pictures);
+         })},
+        {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars/([0-9]{1,3})",
+         Shown([of, taskOf](const Request& request, const Visit& visit) {
+             return calibrate(visit, request.matches[1], std::stoul(request.matches[2]), request.params, taskOf,
+                              of->pictures);
+         })},
+        {"GET", "/attempts/([0-9a-f]{32})/exemplar", Shown([of, taskOf](const Request& request, const Visit& visit) {
+             return exemplarOf(visit, request.matches[1], taskOf, of->pictures);
+         })},
+        {"POST", "/attempts/([0-9a-f]{32})/exemplar", Shown([of, taskOf](const Request& request, const Visit& visit) {
+             return setExemplar(visit, request.matches[1], request.params, taskOf, of->pictures);
          })},
         {"GET", "/exercises", Shown([](const Request&, const Visit& visit) { return exercisesOf(visit); })},
         {"POST", "/exercises",

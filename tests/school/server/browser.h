@@ -64,6 +64,13 @@ inline std::string pathOf(const std::string& pattern) {
             continue;
         }
         const std::size_t end = pattern.find(')', at), counted = pattern.rfind('{', end);
+        if (const std::size_t either = pattern.find('|', at); either < end) {
+            // The first of several words.
+            for (const char c : pattern.substr(at + 1, either - at - 1))
+                if (c != '\\') path += c;
+            at = end + 1;
+            continue;
+        }
         const int count = counted > at && counted < end ? std::stoi(pattern.substr(counted + 1)) : 1;
         path += std::string(static_cast<std::size_t>(count), '2');
         at = end + 1;

@@ -323,6 +323,149 @@ TEST_F(TeachingTest, AnExerciseIsUploadedAndGivenToAClass) {
     EXPECT_EQ(upload(student, good)->status, 403);
 }
 
+TEST_F(TeachingTest, ResultsAreCurvesAndTablesWithCodesAlone) {
+    School school(data());
+    Books open(data());
+    push(open, 1, false, 9000);
+    finish(open, 9.5);
+    Browser teacher(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    const std::string curves = teacher.get("/classes/c1/results")->body;
+    EXPECT_THAT(curves,
+                AllOf(HasSubstr("<svg"), HasSubstr("Name1"), HasSubstr("/people/w1/curves"), HasSubstr("+45.0")));
+    EXPECT_THAT(teacher.get("/people/w1/curves")->body, AllOf(HasSubstr("<svg"), HasSubstr("50.0"), HasSubstr("95.0")));
+    const auto csv = teacher.get("/classes/c1/export/attempts.csv");
+    EXPECT_EQ(csv->get_header_value("Content-Type"), "text/csv; charset=utf-8");
+    EXPECT_EQ(std::count(csv->body.begin(), csv->body.end(), '\n'), 8) << "a head and seven attempts";
+    EXPECT_THAT(csv->body,
+                AllOf(HasSubstr("w1,as1,block"), HasSubstr("proven"), HasSubstr(",95,"), Not(HasSubstr("Name"))));
+    const std::string criteria = teacher.get("/classes/c1/export/criteria.csv")->body;
+    EXPECT_EQ(std::count(criteria.begin(), criteria.end(), '\n'), 1 + 7 * 2);
+    EXPECT_THAT(teacher.get("/classes/c1/export/results.zip")->body, testing::StartsWith("PK"));
+    EXPECT_THAT(teacher.get("/classes/c1/export/report")->body,
+                AllOf(HasSubstr("Learning curves"), Not(HasSubstr("Name1"))));
+    const std::string statements =
+        teacher.get("/classes/c1/export/statements.json?home=https%3A%2F%2Fschool.example")->body;
+    EXPECT_THAT(statements,
+                AllOf(HasSubstr("https://school.example"), HasSubstr("\"name\": \"w3\""), Not(HasSubstr("Name"))));
+    EXPECT_EQ(std::count(statements.begin(), statements.end(), '\n') > 50, true);
+    EXPECT_EQ(teacher.get("/classes/c1/export/statements.json?home=nonsense")->status, 422);
+    // A student has their own and nobody else's; others of the school nothing.
+    Browser student(school.address());
+    ASSERT_EQ(student.logIn("w1"), 303);
+    const std::string own = student.get("/people/w1/export/attempts.csv")->body;
+    EXPECT_EQ(std::count(own.begin(), own.end(), '\n'), 3);
+    EXPECT_EQ(student.get("/people/w2/export/attempts.csv")->status, 403);
+    EXPECT_EQ(student.get("/people/w2/curves")->status, 403);
+    EXPECT_EQ(student.get("/classes/c1/export/attempts.csv")->status, 403);
+    Browser examiner(school.address());
+    ASSERT_EQ(examiner.logIn("e1"), 303);
+    EXPECT_EQ(examiner.get("/classes/c1/results")->status, 403);
+    EXPECT_EQ(examiner.get("/people/w1/curves")->status, 403) << "an examiner does not learn whose work it is";
+    Browser stranger(school.address());
+    ASSERT_EQ(stranger.logIn("t2"), 303);
+    EXPECT_EQ(stranger.get("/classes/c1/export/results.zip")->status, 403);
+}
+
+TEST_F(TeachingTest, StandardsAreSetByJudgesAndByImpressionsAndKept) {
+    School school(data());
+    Browser teacher(school.address()), examiner(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    ASSERT_EQ(examiner.logIn("e1"), 303);
+    const std::string path = "/assignments/as1/standard";
+    EXPECT_EQ(teacher.send(path, {{"do", "keep"}, {"method", "angoff"}})->status, 422) << "nobody has judged";
+    const auto wrong =
+        examiner.send(path, {{"do", "estimate"}, {"round", "1"}, {"e.removed", "101"}, {"e.amount", "40"}});
+    EXPECT_EQ(wrong->status, 422);
+    EXPECT_THAT(wrong->body,
+                AllOf(HasSubstr("Give 0 to 100 %"), HasSubstr("value=\"101\""), HasSubstr("value=\"40\"")));
+    EXPECT_EQ(
+        examiner.send(path, {{"do", "estimate"}, {"round", "2"}, {"e.removed", "50"}, {"e.amount", "40"}})->status, 422)
+        << "the first round first";
+    EXPECT_EQ(
+        examiner.send(path, {{"do", "estimate"}, {"round", "1"}, {"e.removed", "50"}, {"e.amount", "80"}})->status,
+        303);
+    // The teacher judges alone first.
+    EXPECT_THAT(teacher.get(path)->body, AllOf(HasSubstr("once you have given yours"), Not(HasSubstr("62.0"))));
+    EXPECT_EQ(teacher.send(path, {{"do", "estimate"}, {"round", "1"}, {"e.removed", "60"}, {"e.amount", "40"}})->status,
+              303);
+    // 62 and 52 of 100: by hand, in standard_test.
+    EXPECT_THAT(teacher.get(path)->body, AllOf(HasSubstr("57.0 %"), HasSubstr("7.1 %"), HasSubstr("Round 2")));
+    EXPECT_EQ(examiner.send(path, {{"do", "keep"}, {"method", "angoff"}})->status, 403);
+    EXPECT_EQ(teacher.send(path, {{"do", "keep"}, {"method", "angoff"}})->status, 303);
+    EXPECT_THAT(teacher.get("/assignments/as1")->body, AllOf(HasSubstr("60 %"), HasSubstr("57.0 % (")));
+    // Impressions that go with the scores: 5 to 9 points have 1 to 5.
+    EXPECT_EQ(teacher.send(path, {{"do", "keep"}, {"method", "borderline"}})->status, 422);
+    EXPECT_EQ(examiner.send("/assignments/as1/marking", {})->status, 303);
+    Books open(data());
+    school::Teaching teaching(open);
+    std::map<std::string, double> points;
+    for (const school::Score& score : teaching.scores("as1"))
+        points[score.attempt] = score.score;
+    std::vector<std::string> codes = codesOn(examiner);
+    for (const std::string& code : codes) {
+        EXPECT_EQ(examiner.send("/assignments/as1/marking/" + code, {{"m.removed", "1"}, {"do", "keep"}})->status, 200);
+        const std::string attempt = teaching.sheet("as1", "e1", code)->attempt;
+        const int rating = std::clamp(static_cast<int>(points.at(attempt)) - 4, 1, 5);
+        EXPECT_EQ(
+            examiner
+                .send("/assignments/as1/marking/" + code, sheetOf("5", "good", "yes", std::to_string(rating).c_str()))
+                ->status,
+            303);
+    }
+    EXPECT_THAT(teacher.get(path)->body,
+                AllOf(HasSubstr("6 works: score against"), HasSubstr("<svg"), HasSubstr("seed 20261126")));
+    EXPECT_EQ(teacher.send(path, {{"do", "keep"}, {"method", "borderline"}})->status, 303);
+    ASSERT_THAT(teaching.standards("as1"), SizeIs(2));
+    EXPECT_THAT(teaching.standards("as1")[1].content,
+                AllOf(HasSubstr("\"cut_percent\""), HasSubstr("\"seed\":20261126")));
+    Browser student(school.address());
+    ASSERT_EQ(student.logIn("w1"), 303);
+    EXPECT_EQ(student.get(path)->status, 403);
+}
+
+TEST_F(TeachingTest, ANewMarkerMarksExemplarsFirst) {
+    School school(data());
+    Browser teacher(school.address()), examiner(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    ASSERT_EQ(examiner.logIn("e1"), 303);
+    httplib::Params consensus = sheetOf("5", "good", "yes", "4");
+    consensus.erase("do");
+    consensus.emplace("do", "set");
+    for (const std::size_t i : {std::size_t{0}, std::size_t{1}, std::size_t{2}}) {
+        const std::string path = "/attempts/" + attempts_[i] + "/exemplar";
+        EXPECT_EQ(examiner.get(path)->status, 403);
+        EXPECT_EQ(examiner.send(path, consensus)->status, 403);
+        EXPECT_EQ(teacher.send(path, {{"m.removed", "9"}, {"do", "set"}})->status, 422);
+        EXPECT_EQ(teacher.send(path, consensus)->status, 303);
+    }
+    EXPECT_THAT(examiner.get("/assignments/as1/marking")->body,
+                AllOf(HasSubstr("3 exemplars come first"), Not(HasSubstr("Begin with"))));
+    EXPECT_EQ(examiner.send("/assignments/as1/marking", {})->get_header_value("Location"),
+              "/assignments/as1/exemplars");
+    EXPECT_FALSE(school::Teaching(*std::make_unique<Books>(data())).desk("as1", "e1"));
+    const std::string first = "/assignments/as1/exemplars/1";
+    EXPECT_THAT(examiner.get(first)->body, Not(HasSubstr(attempts_[0])));
+    EXPECT_EQ(examiner.send(first, {{"m.removed", "x"}})->status, 422);
+    EXPECT_EQ(examiner.send(first, sheetOf("4", "poor", "yes", "3"))->status, 303);
+    EXPECT_THAT(examiner.get(first)->body,
+                AllOf(HasSubstr("Your marks and the consensus"), HasSubstr(">-1<"), HasSubstr("another")));
+    EXPECT_EQ(examiner.send(first, sheetOf("5", "good", "yes", "4"))->status, 303);
+    EXPECT_THAT(examiner.get(first)->body, HasSubstr(">-1<")) << "the first marks count";
+    EXPECT_EQ(examiner.send("/assignments/as1/exemplars/2", sheetOf("5", "good", "yes", "4"))->status, 303);
+    EXPECT_EQ(examiner.send("/assignments/as1/exemplars/3", sheetOf("5", "good", "yes", "4"))->status, 303);
+    EXPECT_EQ(examiner.get("/assignments/as1/exemplars/4")->status, 403);
+    EXPECT_EQ(examiner.get("/assignments/as1/exemplars/999")->status, 403);
+    // Points: -1, 0, 0 of three.
+    EXPECT_THAT(examiner.get("/assignments/as1/exemplars")->body,
+                AllOf(HasSubstr("Agreement with the consensus"), HasSubstr("-0.33")));
+    EXPECT_THAT(examiner.get("/assignments/as1/marking")->body, HasSubstr("Begin with 3 works"));
+    EXPECT_EQ(examiner.send("/assignments/as1/marking", {})->status, 303);
+    EXPECT_THAT(codesOn(examiner), SizeIs(4)) << "three works, one of them twice; no exemplar among them";
+    EXPECT_EQ(teacher.send("/attempts/" + attempts_[0] + "/exemplar", {{"do", "remove"}})->status, 303);
+    EXPECT_THAT(school::Teaching(*std::make_unique<Books>(data())).exemplars("as1"), SizeIs(2));
+}
+
 TEST(SettleTest, IsTheMeanOfTheNewestUnlessTheyDifferTooMuchOrOnWhoPasses) {
     const auto mark = [](const char* marker, const char* kind, const char* verdict, double points, int made) {
         return school::Mark{"", "", marker, kind, verdict, points, 20.0, "", made};

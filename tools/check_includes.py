@@ -20,7 +20,7 @@ THIRD_PARTY = {
     r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",
-    r"sodium\.h": r"src/handpiece/school/(store/content_files|people/secret)\.cpp",
+    r"sodium\.h": r"src/handpiece/school/(store/content_files|people/secret|exam/signing)\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
     r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
     r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/app/.*",

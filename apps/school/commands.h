@@ -12,5 +12,7 @@ void addServeCommand(cli::Command& app);
 void addBooksCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
+/// exam, verify-receipt.
+void addExamCommands(cli::Command& app);
 
 }  // namespace handpiece::school_cli

@@ -2,80 +2,26 @@
 #include "school/station.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/content_files.h"
+#include "school/line.h"
+#include "school/send_file.h"
 
 namespace handpiece::school_station {
 namespace {
 
 namespace fs = std::filesystem;
-using school_wire::Received;
-
-constexpr auto kPatience = std::chrono::seconds(20);
-
-core::Error silent(const std::string& server, const std::string& why) {
-    return core::Error(fmt::format("nobody answers there ({})", why), server,
-                       "try again when the network is there: nothing is lost until then")
-        .as("server-silent", {server, why});
-}
-
-class Line {
-  public:
-    Line(const std::string& server, std::string key) : server_(server), http_(checked(server)) {
-        http_.set_connection_timeout(kPatience);
-        http_.set_read_timeout(kPatience);
-        http_.set_write_timeout(kPatience);
-        http_.set_keep_alive(true);
-        httplib::Headers headers{{"Handpiece-Protocol", std::to_string(school_wire::kProtocol)}};
-        if (!key.empty()) headers.emplace("Authorization", "Bearer " + key);
-        http_.set_default_headers(headers);
-    }
-    std::string get(const std::string& path) { return heard(http_.Get(path)); }
-    std::string post(const std::string& path, const std::string& json) {
-        return heard(http_.Post(path, json, "application/json"));
-    }
-    std::string put(const std::string& path, const std::string& bytes) {
-        return heard(http_.Put(path, bytes, "application/octet-stream"));
-    }
-
-  private:
-    static const std::string& checked(const std::string& server) {
-        if (!server.starts_with("http://") && !server.starts_with("https://"))
-            throw core::Error("this is no address of a server", server, "give one as https://school.example:8620")
-                .as("server-address", {server});
-        return server;
-    }
-    std::string heard(const httplib::Result& result) const {
-        if (!result) throw silent(server_, httplib::to_string(result.error()));
-        if (result->status < 200 || result->status > 299) throw school_wire::errorFrom(result->body, result->status);
-        return result->body;
-    }
-
-    std::string server_;
-    httplib::Client http_;
-};
 
 /// What will be refused tomorrow as well.
 bool isFinal(const core::Error& error) {
     constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged", "upload-mismatch"};
     return std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
-}
-
-std::string pieceOf(const fs::path& file, std::uint64_t offset, std::size_t bytes) {
-    std::ifstream in(file, std::ios::binary);
-    std::string piece(bytes, '\0');
-    in.seekg(static_cast<std::streamoff>(offset));
-    if (!in.read(piece.data(), static_cast<std::streamsize>(bytes)))
-        throw core::Error("the recording cannot be read", file.string(), "see whether the disk is all right");
-    return piece;
 }
 
 class Pusher {
@@ -142,19 +88,8 @@ class Pusher {
             sendFile(files[i], p.files[i]);
     }
     void sendFile(const fs::path& file, const std::string& hash) {
-        const std::uint64_t bytes = fs::file_size(file);
-        Received there = school_wire::receivedFrom(line_.get(fmt::format("/api/v1/files/{}?bytes={}", hash, bytes)));
-        if (there.isWhole) return;
-        do {
-            if (there.bytes > bytes) throw core::Error("it has more of a file than there is", enrolment_.server);
-            const std::string piece = pieceOf(
-                file, there.bytes,
-                static_cast<std::size_t>(std::min<std::uint64_t>(bytes - there.bytes, school_wire::kMostPiece)));
-            there = school_wire::receivedFrom(
-                line_.put(fmt::format("/api/v1/files/{}?bytes={}&offset={}", hash, bytes, there.bytes), piece));
-            pushed_.bytes += piece.size();
-        } while (!there.isWhole && there.bytes < bytes);
-        ++pushed_.files;
+        if (const std::uint64_t bytes = school_station::sendFile(line_, file, hash); bytes > 0)
+            pushed_.bytes += bytes, ++pushed_.files;
     }
 
     school::Store& store_;

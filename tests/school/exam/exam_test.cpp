@@ -324,7 +324,7 @@ TEST_F(AtAStation, AServiceThatStartsAgainGoesOnAndItShows) {
 TEST_F(AtAStation, WhatAChainSaysIsHeldAgainstTheTime) {
     const Pack pack = packOf();
     Entry begun;
-    begun.kind = "begun", begun.at = kOpens + kMinute, begun.sitting = std::string(32, '5');
+    begun.kind = "begun", begun.at = kOpens + kMinute, begun.sitting = std::string(32, '5'), begun.invigilator = "t1";
     begun.candidate = candidateHash("exam-1", kCode);
     const auto entry = [&](const char* kind, Milliseconds at, std::int64_t ticks = 0) {
         Entry e;

@@ -99,6 +99,9 @@ std::vector<std::string> doubtsOf(const Pack& pack, std::span<const Entry> entri
     if (known == pack.candidates.end()) return {"this exam knows no such candidate"};
     if (begun.at < pack.opens) doubts.push_back("it was begun before the exam opened, " + clockOf(begun.at));
     if (begun.at > pack.closes) doubts.push_back("it was begun after the exam closed, " + clockOf(begun.at));
+    if (std::none_of(pack.invigilators.begin(), pack.invigilators.end(),
+                     [&](const Invigilator& one) { return one.person == begun.invigilator; }))
+        doubts.push_back("whoever confirmed the identity is none of this exam's invigilators: " + begun.invigilator);
     if (begun.again > 0) doubts.push_back(fmt::format("this candidate had begun {} times here before", begun.again));
     std::int64_t restarts = 0, checkpoints = 0;
     Milliseconds last = begun.at, silent = 0;

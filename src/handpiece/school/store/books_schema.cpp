@@ -116,6 +116,9 @@ CREATE TABLE exam_candidates (
   exam TEXT NOT NULL REFERENCES exam_settings (exam), person TEXT NOT NULL REFERENCES people (code),
   code TEXT NOT NULL, extra_percent INT8 NOT NULL, pause_minutes INT8 NOT NULL, helps TEXT NOT NULL,
   PRIMARY KEY (exam, person), UNIQUE (exam, code)) STRICT;
+CREATE TABLE exam_codes (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), code TEXT NOT NULL,
+  person TEXT NOT NULL REFERENCES people (code), PRIMARY KEY (exam, code)) STRICT;
 CREATE TABLE exam_invigilators (
   exam TEXT NOT NULL REFERENCES exam_settings (exam), person TEXT NOT NULL REFERENCES people (code),
   pin TEXT NOT NULL, PRIMARY KEY (exam, person)) STRICT;

@@ -55,6 +55,7 @@ constexpr std::array kListed = {
     Listed{"exam_settings", "t exam, i minutes, t locked", "exam", nullptr},
     Listed{"exam_candidates", "t exam, t person, i extra_percent, i pause_minutes, t helps", "exam, person",
            "person = $1"},
+    Listed{"exam_codes", "t exam, t code, t person", "exam, code", "person = $1"},
     Listed{"exam_invigilators", "t exam, t person", "exam, person", "person = $1"},
     Listed{"exam_packs", "t exam, i version, t hash, t key, t signature, i made", "exam, version", nullptr},
     Listed{"exam_sittings",

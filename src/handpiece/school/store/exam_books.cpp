@@ -86,9 +86,11 @@ void ExamBooks::set(const ExamCandidate& c, const Act& act) {
     Transaction transaction(*state_.database);
     requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", c.exam), *state_.database, c.exam);
     state_.requirePerson(c.person);
-    if (state_.any("SELECT 1 FROM exam_candidates WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code,
+    if (state_.any("SELECT 1 FROM exam_codes WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code,
                    c.person))
         throw duplicate(*state_.database, "candidate's code in exam", c.exam);
+    state_.run("INSERT INTO exam_codes (exam, code, person) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", c.exam, c.code,
+               c.person);
     state_.run(
         "INSERT INTO exam_candidates (exam, person, code, extra_percent, pause_minutes, helps) VALUES ($1, $2, $3, $4, "
         "$5, $6) ON CONFLICT (exam, person) DO UPDATE SET code = excluded.code, extra_percent = "
@@ -130,6 +132,12 @@ std::vector<ExamInvigilator> ExamBooks::invigilators(const std::string& exam) co
     while (rows.next())
         all.push_back({rows.text(0), rows.text(1), rows.text(2)});
     return all;
+}
+
+std::optional<std::string> ExamBooks::personOfCode(const std::string& exam, const std::string& code) const {
+    Statement row = state_.ask("SELECT person FROM exam_codes WHERE exam = $1 AND code = $2", exam, code);
+    if (!row.next()) return {};
+    return row.text(0);
 }
 
 bool ExamBooks::add(const ExamPack& p, const Act& act) {
@@ -304,6 +312,8 @@ void ExamBooks::add(const ExamDecision& d, const Act& act) {
         throw wrongNow(before.empty() ? "nothing was decided yet" : "an appeal is open already", "wait for the decision");
     if ((d.kind == "remark" || d.kind == "decide") && !isOpen)
         throw wrongNow("no appeal is open", "there is nothing to decide");
+    if (d.kind == "decide" && (before.back().kind != "remark"))
+        throw wrongNow("nobody has marked it again yet", "an examiner does, without knowing what was said");
     // Who marks it again has not judged it before, nor sees what was said.
     if (d.kind == "remark" && std::any_of(before.begin(), before.end(), [&](const ExamDecision& one) {
             return one.person == d.person && one.kind != "appeal";
@@ -337,10 +347,10 @@ bool hasOpenAppeal(const std::vector<ExamDecision>& decisions) {
 }
 
 std::string verdictOf(const std::vector<ExamDecision>& decisions) {
-    std::string verdict = "to be confirmed";
+    std::string verdict = kUnconfirmed;
     for (const ExamDecision& d : decisions)
         if (d.kind == "confirm" || d.kind == "decide") verdict = d.verdict;
-    return hasOpenAppeal(decisions) ? "to be confirmed" : verdict;
+    return hasOpenAppeal(decisions) ? kUnconfirmed : verdict;
 }
 
 }  // namespace handpiece::school

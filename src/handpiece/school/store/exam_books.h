@@ -74,6 +74,8 @@ class ExamBooks : public BooksRoom {
     void set(const ExamInvigilator& invigilator, const Act& act);
     [[nodiscard]] std::vector<ExamCandidate> candidates(const std::string& exam) const;
     [[nodiscard]] std::vector<ExamInvigilator> invigilators(const std::string& exam) const;
+    /// Whose it is or was: a code that was replaced stands in packs that are out.
+    [[nodiscard]] std::optional<std::string> personOfCode(const std::string& exam, const std::string& code) const;
 
     /// The next version. Returns false where it is there already.
     bool add(const ExamPack& pack, const Act& act);
@@ -111,7 +113,8 @@ class ExamBooks : public BooksRoom {
     Books& books_;
 };
 
-/// The verdict that holds: the last confirmation or decision; "to be confirmed" where there is none, or an appeal is
+inline constexpr const char* kUnconfirmed = "to be confirmed";
+/// The verdict that holds: the last confirmation or decision; kUnconfirmed where there is none, or an appeal is
 /// open.
 [[nodiscard]] std::string verdictOf(const std::vector<ExamDecision>& decisions);
 [[nodiscard]] bool hasOpenAppeal(const std::vector<ExamDecision>& decisions);

@@ -25,6 +25,7 @@
 #include "school/answers.h"
 #include "school/exam_desk.h"
 #include "school/exam_station.h"
+#include "school/wire.h"
 
 namespace handpiece::school_exam {
 namespace {

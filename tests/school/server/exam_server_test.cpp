@@ -2,7 +2,6 @@
 // An exam from its making to the appeal, over real HTTP, and what was tried against it: each attack that
 // docs/school-exams.md says is stopped.
 #include <atomic>
-#include <regex>
 
 #include "handpiece/app/proving/exam_check.h"
 #include "handpiece/record/session/recorder.h"
@@ -35,7 +34,7 @@ using school::Books;
 using school::ExamBooks;
 
 const std::string kPin = "PPP-QQQ-RRR-SSS", kCandidate = "123-456-789-ABC", kOther = "ABC-456-789-ABC";
-constexpr const char* kPassword = "a long enough one";
+using school_server::kPassword;
 constexpr const char* kExamCode = "ABC-DEF-GHJ-KMR";
 
 /// A station's service in a thread.
@@ -366,7 +365,7 @@ TEST_F(ExamTest, ATeacherDecidesAndAnExaminerMarksAgainBlind) {
     const std::string page = "/sittings/" + sitting;
     const auto status = [&](const auto& who, const std::string& path) { return who->get(path)->status; };
     const auto says = [&](const auto& who, const char* what, const char* verdict, const char* words) {
-        return who->post(page + "/" + what, {{"token", who->token()}, {"verdict", verdict}, {"words", words}})->status;
+        return who->send(page + "/" + what, httplib::Params{{"verdict", verdict}, {"words", words}})->status;
     };
     EXPECT_EQ(status(teacher, "/exams/ex1"), 200);
     EXPECT_EQ(status(examiner, "/exams/ex1"), 200);

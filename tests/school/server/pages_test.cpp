@@ -3,7 +3,7 @@
 #include <regex>
 
 #include "handpiece/school/people/secret.h"
-#include "school/server/school_fixture.h"
+#include "school/server/browser.h"
 #include "school/worker.h"
 
 namespace handpiece::school_server {
@@ -12,37 +12,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* kPassword = "a long enough one";
-
-/// Somebody at a browser.
-class Browser {
-  public:
-    explicit Browser(const std::string& address) : http_(address) {}
-    httplib::Result get(const std::string& path) { return http_.Get(path, headers()); }
-    httplib::Result post(const std::string& path, const httplib::Params& form) {
-        httplib::Result result = http_.Post(path, headers(), form);
-        if (result) take(*result);
-        return result;
-    }
-    int logIn(const std::string& login, const std::string& password = kPassword) {
-        const auto result = post("/login", {{"login", login}, {"password", password}});
-        return result ? result->status : 0;
-    }
-    [[nodiscard]] const std::string& cookie() const { return cookie_; }
-
-  private:
-    [[nodiscard]] httplib::Headers headers() const {
-        return cookie_.empty() ? httplib::Headers{} : httplib::Headers{{"Cookie", "handpiece=" + cookie_}};
-    }
-    void take(const httplib::Response& response) {
-        const std::string set = response.get_header_value("Set-Cookie");
-        std::smatch found;
-        if (std::regex_search(set, found, std::regex("handpiece=([0-9a-f]*);"))) cookie_ = found[1];
-    }
-    httplib::Client http_;
-    std::string cookie_;
-};
 
 class PagesTest : public SchoolTest {
   protected:
@@ -143,9 +112,7 @@ TEST_F(PagesTest, EachSeesWhatIsTheirs) {
         httplib::Client http(school.address());
         for (const Route& route : Server::routes()) {
             if (route.caller != Caller::person) continue;
-            std::string path = route.pattern;
-            if (const std::size_t at = path.find('('); at != std::string::npos)
-                path = path.substr(0, at) + std::string(32, 'a') + (path.ends_with("/result") ? "/result" : "");
+            const std::string path = pathOf(route.pattern);
             const httplib::Headers headers{{"Cookie", "other=1; handpiece=" + cookie}};
             const auto result =
                 route.method == "GET" ? http.Get(path, headers) : http.Post(path, headers, "", "text/plain");
@@ -192,7 +159,8 @@ TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
         ++tried;
     EXPECT_EQ(tried, 5);
     EXPECT_EQ(browser.logIn("t1"), 429) << "the right one waits too";
-    EXPECT_THAT(browser.post("/login", {{"login", "t1"}, {"password", "x"}})->body, HasSubstr("Try again in"));
+    EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body,
+                HasSubstr("Try again in"));
     EXPECT_TRUE(browser.cookie().empty());
 }
 
@@ -202,12 +170,12 @@ TEST_F(PagesTest, ALogInEnds) {
     ASSERT_EQ(browser.logIn("t1"), 303);
     const std::string old = browser.cookie();
     // From another page than one of this log-in: nothing happens.
-    EXPECT_EQ(browser.post("/logout", {{"token", "guess"}})->status, 403);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", "guess"}})->status, 403);
     EXPECT_EQ(browser.get("/classes")->status, 200);
     const std::string page = browser.get("/classes")->body;
     std::smatch token;
     ASSERT_TRUE(std::regex_search(page, token, std::regex("name=\"token\" value=\"([0-9a-f]+)\"")));
-    EXPECT_EQ(browser.post("/logout", {{"token", token[1].str()}})->status, 303);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", token[1].str()}})->status, 303);
     httplib::Client http(school.address());
     EXPECT_EQ(http.Get("/classes", {{"Cookie", "handpiece=" + old}})->status, 303);
     // Whoever is erased is nobody from then on.

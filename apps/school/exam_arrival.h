@@ -16,8 +16,8 @@ namespace handpiece::school_server {
 /// Made once, in the server's folder.
 [[nodiscard]] exam::SigningKey examKey(const std::filesystem::path& data);
 
-/// Signs what the books say of an exam by now, as its next version; the same again is the same pack. Throws core::Error:
-/// "books-unknown", and where nobody could sit it ("exam-empty").
+/// Signs what the books say of an exam by now, as its next version; the same again is the same pack. Throws
+/// core::Error: "books-unknown", and where nobody could sit it ("exam-empty").
 school::ExamPack signExam(school::Books& books, const std::string& exam, const exam::SigningKey& key,
                           const school::Act& act);
 

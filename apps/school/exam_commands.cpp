@@ -213,8 +213,8 @@ void verifyReceipt(const ExamOptions& o) {
     while (!key.empty() && key.back() == '\n')
         key.pop_back();
     const std::vector<std::byte> bytes = core::readFile(o.receipt, 1 << 20);
-    const exam::Receipt r = exam::openedReceipt({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, key,
-                                                o.receipt);
+    const exam::Receipt r =
+        exam::openedReceipt({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, key, o.receipt);
     fmt::print("signed by {}...\nexam {}, candidate {}...\nbegun {}, handed over {}, at the server {}\n",
                key.substr(0, 16), r.exam, r.candidate.substr(0, 16), exam::clockOf(r.began), exam::clockOf(r.finished),
                r.received > 0 ? exam::clockOf(r.received) : "not yet");
@@ -256,8 +256,8 @@ void addServersExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opti
         .takeAll();
     candidates.callback([options] { setCandidates(*options); });
 
-    cli::Command invigilator = top.subcommand(
-        "invigilator", "Who may confirm a candidate's identity, with a code that is told once" + where);
+    cli::Command invigilator =
+        top.subcommand("invigilator", "Who may confirm a candidate's identity, with a code that is told once" + where);
     books(invigilator);
     invigilator.option("EXAM", o.exam, "its id").required();
     invigilator.option("PERSON", o.person, "their code").required();

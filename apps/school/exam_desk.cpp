@@ -37,8 +37,8 @@ class Line {
     std::string post(const std::string& path, const httplib::Params& form) { return heard(http_.Post(path, form)); }
     std::string put(const std::string& path, const std::filesystem::path& file) {
         const std::vector<std::byte> bytes = core::readFile(file);
-        return heard(http_.Put(path, reinterpret_cast<const char*>(bytes.data()), bytes.size(),
-                               "application/octet-stream"));
+        return heard(
+            http_.Put(path, reinterpret_cast<const char*>(bytes.data()), bytes.size(), "application/octet-stream"));
     }
 
   private:
@@ -84,7 +84,8 @@ Desk ExamClient::desk() const {
 }
 
 Desk ExamClient::begin(const std::string& candidate, const std::string& invigilator, const std::string& pin) const {
-    return deskFrom(Line(socket_).post("/begin", {{"candidate", candidate}, {"invigilator", invigilator}, {"pin", pin}}));
+    return deskFrom(
+        Line(socket_).post("/begin", {{"candidate", candidate}, {"invigilator", invigilator}, {"pin", pin}}));
 }
 
 void ExamClient::keepExercise(const std::filesystem::path& file) const {
@@ -93,14 +94,12 @@ void ExamClient::keepExercise(const std::filesystem::path& file) const {
 
 void ExamClient::checkpoint(const std::string& sitting, std::int64_t part, std::int64_t ticks,
                             const std::string& inputs) const {
-    (void)Line(socket_).post("/checkpoint", {{"sitting", sitting},
-                                             {"part", std::to_string(part)},
-                                             {"ticks", std::to_string(ticks)},
-                                             {"inputs", inputs}});
+    (void)Line(socket_).post(
+        "/checkpoint",
+        {{"sitting", sitting}, {"part", std::to_string(part)}, {"ticks", std::to_string(ticks)}, {"inputs", inputs}});
 }
 
-std::string ExamClient::finish(const std::string& sitting,
-                               const std::vector<std::filesystem::path>& recordings) const {
+std::string ExamClient::finish(const std::string& sitting, const std::vector<std::filesystem::path>& recordings) const {
     Line line(socket_);
     std::int64_t part = 0;
     for (const std::filesystem::path& file : recordings) {

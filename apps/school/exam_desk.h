@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What a student's programs hear from the service that holds a station's exams, over a socket of this machine. Texts as
-/// school/exam has them.
+/// What a student's programs hear from the service that holds a station's exams, over a socket of this machine. Texts
+/// as school/exam has them.
 
 #include <cstdint>
 #include <filesystem>

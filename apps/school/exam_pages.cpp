@@ -96,9 +96,8 @@ Page sittingOf(const Visit& v, const std::string& id, const std::filesystem::pat
     view.mayConfirm = !isOpen && may(v, Action::mark, relation) && view.seesDecisions;
     view.mayAppeal = relation.isOwn && isDecided && !isOpen;
     view.mayRemark = isOpen && may(v, Action::markBlind, relation) &&
-                     std::none_of(decisions.begin(), decisions.end(), [&](const school::ExamDecision& d) {
-                         return d.person == v.person.code;
-                     });
+                     std::none_of(decisions.begin(), decisions.end(),
+                                  [&](const school::ExamDecision& d) { return d.person == v.person.code; });
     view.mayDecide = isOpen && may(v, Action::mark, relation) && view.seesDecisions;
     if (!relation.isOwn) noteLook(v, "sitting seen", sitting->person, id);
     report::Names names = namesFor(v, relation, sitting->person);

@@ -21,8 +21,7 @@ struct ExamServiceSettings {
 class ExamService {
   public:
     /// Throws core::Error: "not-enrolled", "exam-chain", "exam-busy", and where nobody can listen.
-    explicit ExamService(ExamServiceSettings settings,
-                         school_server::Clock clock = school_server::systemClock());
+    explicit ExamService(ExamServiceSettings settings, school_server::Clock clock = school_server::systemClock());
     ~ExamService();
     ExamService(const ExamService&) = delete;
     ExamService& operator=(const ExamService&) = delete;

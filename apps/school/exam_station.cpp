@@ -54,7 +54,8 @@ Fetched fetchExams(const std::filesystem::path& folder) {
     std::vector<std::string> ignored;
     const std::vector<exam::Installed> here = exam::packsIn(folder, ignored);
     Fetched fetched;
-    for (const auto& [version, id] : numberedLines(line.get("/api/v1/exams"), station.server)) try {
+    for (const auto& [version, id] : numberedLines(line.get("/api/v1/exams"), station.server))
+        try {
             bool isHere = false;
             for (const exam::Installed& one : here)
                 isHere = isHere || (one.pack.exam == id && one.pack.version == version);
@@ -87,6 +88,17 @@ Told pushExams(const exam::StationIdentity& station,
     Told told;
     const auto there = numberedLines(line.get("/api/v1/exams/chain"), station.server);
     std::int64_t last = there.empty() ? 0 : there.front().first;
+    if (last > 0) {
+        // Is it still the chain that the server knows?
+        const std::vector<exam::Signed> same = entriesAfter(last - 1, 1);
+        if (same.empty())
+            throw core::Error(fmt::format("the server has {} entries of this station, and fewer are here", last),
+                              station.server,
+                              "the folder was put back from a copy: enrol the station anew, in an empty folder")
+                .as("exam-chain", {std::to_string(last), ""});
+        if (exam::hashOfEntry(same.front().text) != there.front().second)
+            (void)line.post("/api/v1/exams/chain", exam::joined(same.front()));  // which it refuses, and notes
+    }
     constexpr std::size_t kSome = 100;
     for (auto some = entriesAfter(last, kSome); !some.empty(); some = entriesAfter(last, kSome))
         for (const exam::Signed& entry : some) {

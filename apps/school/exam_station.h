@@ -27,8 +27,8 @@ Fetched fetchExams(const std::filesystem::path& folder);
 struct Told {
     std::size_t entries = 0, files = 0;
 };
-/// Entries that the server has not, in their order, and the recordings that it asks for. `entriesAfter` and `fileOf` are
-/// asked from this thread. Throws core::Error "server-silent", or what the server says of an entry.
+/// Entries that the server has not, in their order, and the recordings that it asks for. `entriesAfter` and `fileOf`
+/// are asked from this thread. Throws core::Error "server-silent", or what the server says of an entry.
 Told pushExams(const exam::StationIdentity& station,
                const std::function<std::vector<exam::Signed>(std::int64_t, std::size_t)>& entriesAfter,
                const std::function<std::filesystem::path(const std::string& sha256)>& fileOf);

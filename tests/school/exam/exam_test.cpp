@@ -107,7 +107,9 @@ TEST(Signatures, OfAPackFailForEveryBitAndForAnotherKey) {
             ++flipped;
         }
     EXPECT_GT(flipped, 8u * 700u);
-    EXPECT_EQ(errorIdOf([&] { (void)openedPack({text, signatureOf(text, other)}, key.open, "pack"); }),
+    EXPECT_EQ(errorIdOf([&] {
+                  (void)openedPack({text, signatureOf(text, other)}, key.open, "pack");
+              }),
               "exam-other-key");
     // Who signs by another key and names the right one is found as well.
     Signature forged = signatureOf(text, other);
@@ -437,7 +439,9 @@ TEST(Receipts, AreCheckedByAnybodyWhoHasTheSchoolsKey) {
     EXPECT_EQ(errorIdOf([&] { (void)openedReceipt(whole, newSigningKey().open, ""); }), "exam-other-key");
     // A signature of a pack is none of a receipt.
     const std::string pack = toText(packOf());
-    EXPECT_EQ(errorIdOf([&] { (void)openedReceipt(joined({pack, signatureOf(pack, key)}), key.open, ""); }),
+    EXPECT_EQ(errorIdOf([&] {
+                  (void)openedReceipt(joined({pack, signatureOf(pack, key)}), key.open, "");
+              }),
               "exam-damaged");
     EXPECT_EQ(errorIdOf([&] { (void)openedReceipt("", key.open, ""); }), "exam-damaged");
 }

@@ -92,9 +92,9 @@ class Recordings {
         };
         std::map<std::string, std::int64_t> done;
         for (const session::Event& event : reader.events())
-            if ((event.name == "undo" || event.name == "redo") ? isLocked("undo")
-                                                              : event.name == "reset" &&
-                                                                    (isLocked("undo") || isLocked("reset")))
+            if ((event.name == "undo" || event.name == "redo")
+                    ? isLocked("undo")
+                    : event.name == "reset" && (isLocked("undo") || isLocked("reset")))
                 ++done[event.name];
         for (const auto& [name, times] : done)
             tell(fmt::format("recording {}: {} was used {} times, and it was locked", part, name, times));

@@ -18,7 +18,10 @@ std::string examWord(const char* what) {
     return words()(std::string("school-exam.") + what);
 }
 std::string verdictWord(const std::string& verdict) {
-    return examWord(verdict == "pass" ? "pass" : verdict == "fail" ? "fail" : verdict == "void" ? "void" : "unconfirmed");
+    return examWord(verdict == "pass"   ? "pass"
+                    : verdict == "fail" ? "fail"
+                    : verdict == "void" ? "void"
+                                        : "unconfirmed");
 }
 std::string examName(const Names& names, const std::string& code) {
     const auto found = names.find(code);
@@ -84,10 +87,12 @@ std::string examPage(const Looker& who, const ExamView& view, const Names& names
         } else {
             cells.push_back({fmt::format("{} {}", examWord(("state-" + row.sitting->state).c_str()),
                                          momentOf(row.sitting->ended > 0 ? row.sitting->ended : row.sitting->began))});
-            cells.push_back({row.score ? fmt::format("{} ({})", worthOf(*row.score), proofWord(row.score))
-                                       : proofWord(row.score)});
+            cells.push_back(
+                {row.score ? fmt::format("{} ({})", worthOf(*row.score), proofWord(row.score)) : proofWord(row.score)});
             cells.push_back({row.doubts > 0 ? words()("school-exam.doubts", row.doubts) : std::string()});
-            cells.push_back({row.isAppealed ? examWord("appealed") : view.showsVerdicts ? verdictWord(row.verdict) : ""});
+            cells.push_back({row.isAppealed       ? examWord("appealed")
+                             : view.showsVerdicts ? verdictWord(row.verdict)
+                                                  : ""});
         }
         rows.push_back(std::move(cells));
     }
@@ -126,8 +131,7 @@ std::string sittingPage(const Looker& who, const SittingView& view, const Names&
                            view.score->state == "proven" ? Tone::good : Tone::bad);
             if (!view.score->reason.empty())
                 page.paragraph(view.score->reason, view.score->state == "proven" ? Tone::note : Tone::bad);
-            if (!view.score->result.empty())
-                page.link("/attempts/" + s.id + "/result", words()("school.whole-result"));
+            if (!view.score->result.empty()) page.link("/attempts/" + s.id + "/result", words()("school.whole-result"));
         }
     }
     if (view.seesWorth && view.seesDecisions) {

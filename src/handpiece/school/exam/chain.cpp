@@ -108,8 +108,7 @@ std::vector<std::string> doubtsOf(const Pack& pack, std::span<const Entry> entri
     for (std::size_t i = 0; i < entries.size(); ++i) {
         const Entry& e = entries[i];
         if (i > 0 && e.at < entries[i - 1].at)
-            doubts.push_back(
-                fmt::format("the station's clock went back by {}", secondsOf(entries[i - 1].at - e.at)));
+            doubts.push_back(fmt::format("the station's clock went back by {}", secondsOf(entries[i - 1].at - e.at)));
         // It cannot come before it was.
         if (i < received.size() && e.at > received[i] + kClockMs)
             doubts.push_back(fmt::format("the station's clock is ahead of the server's by {} or more",
@@ -119,8 +118,8 @@ std::vector<std::string> doubtsOf(const Pack& pack, std::span<const Entry> entri
         if (e.kind == "checkpoint" || e.kind == "finished") silent = std::max(silent, e.at - last), last = e.at;
         for (std::size_t k = 0; k < i && e.kind == "checkpoint"; ++k)
             if (entries[k].kind == "checkpoint" && entries[k].part == e.part && entries[k].ticks > e.ticks) {
-                doubts.push_back(fmt::format("recording {} went back from {} to {} ticks", e.part, entries[k].ticks,
-                                             e.ticks));
+                doubts.push_back(
+                    fmt::format("recording {} went back from {} to {} ticks", e.part, entries[k].ticks, e.ticks));
                 break;
             }
     }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What a station's service notes of its exams: entries, each signed by the station's key and naming the hash of the one
-/// before, so that none can be taken out, put in or changed unseen. docs/school-exams.md.
+/// What a station's service notes of its exams: entries, each signed by the station's key and naming the hash of the
+/// one before, so that none can be taken out, put in or changed unseen. docs/school-exams.md.
 
 #include <cstdint>
 #include <span>
@@ -22,7 +22,7 @@ struct HandedOver {
 };
 
 struct Entry {
-    std::string station{};   ///< 32 digits
+    std::string station{};    ///< 32 digits
     std::int64_t number = 0;  ///< from 1, without gaps
     std::string previous{};   ///< hash of the entry before; zeros for the first
     Milliseconds at = 0;      ///< by the service's clock

@@ -72,9 +72,9 @@ Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::pat
     if (core::isThere(in / "pack.txt")) {
         const Pack there = packFrom(textOf(in / "pack.txt", kMostPackBytes), in.string());
         if (there.version > pack.version)
-            throw core::Error(fmt::format("this pack is of version {}, and version {} is here already", pack.version,
-                                          there.version),
-                              pack.exam, "nothing is to be done: the newer one holds")
+            throw core::Error(
+                fmt::format("this pack is of version {}, and version {} is here already", pack.version, there.version),
+                pack.exam, "nothing is to be done: the newer one holds")
                 .as("exam-older", {std::to_string(pack.version), std::to_string(there.version)});
     }
     if (!exercise.empty()) {
@@ -104,7 +104,8 @@ std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>&
         folders.push_back(entry->path());
     std::sort(folders.begin(), folders.end());
     std::vector<Installed> all;
-    for (const fs::path& in : folders) try {
+    for (const fs::path& in : folders)
+        try {
             Installed one;
             one.text.text = textOf(in / "pack.txt", kMostPackBytes);
             one.text.signature = signatureFrom(textOf(in / "pack.sig", 4096), (in / "pack.sig").string());
@@ -122,7 +123,8 @@ std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>&
     return all;
 }
 
-Invigilation::Invigilation(fs::path folder, Milliseconds now) : folder_(std::move(folder)), identity_(stationIn(folder_)) {
+Invigilation::Invigilation(fs::path folder, Milliseconds now)
+    : folder_(std::move(folder)), identity_(stationIn(folder_)) {
     key_ = keptSigningKey(folder_ / "station.key");
     core::prepareOutputFolder(folder_ / "chain", true);
     for (std::int64_t next = 1; core::isThere(entryFile(folder_, next)); ++next) {

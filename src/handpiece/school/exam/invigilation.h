@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// A station's side of exams, in a folder that no student's account can read or write: the packs, the station's key, the
-/// chain of what happened, and sessions that were handed over. No network and no clock of its own.
+/// A station's side of exams, in a folder that no student's account can read or write: the packs, the station's key,
+/// the chain of what happened, and sessions that were handed over. No network and no clock of its own.
 
 #include <cstddef>
 #include <filesystem>
@@ -25,8 +25,8 @@ struct StationIdentity {
 void keepStation(const StationIdentity& identity, const std::filesystem::path& folder);
 
 /// Checks signature and content, and that the exercise is the one that is named, and keeps both: whole or not at all.
-/// An older version than the one that is there is refused ("exam-older"). Throws as openedPack(); "exam-exercise-other".
-/// `exercise`: a file that is moved away; empty: it is there already.
+/// An older version than the one that is there is refused ("exam-older"). Throws as openedPack();
+/// "exam-exercise-other". `exercise`: a file that is moved away; empty: it is there already.
 Pack installPack(const std::filesystem::path& folder, const Signed& pack, const std::filesystem::path& exercise);
 struct Installed {
     Pack pack;

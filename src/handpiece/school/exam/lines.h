@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// The texts of this room: a first line that says what it is, then `key: value` a line, all of them, in one order. There
-/// is one way to write each, so what is signed is what is read.
+/// The texts of this room: a first line that says what it is, then `key: value` a line, all of them, in one order.
+/// There is one way to write each, so what is signed is what is read.
 
 #include <cstdint>
 #include <string>

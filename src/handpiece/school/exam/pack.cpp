@@ -26,6 +26,7 @@ core::Error twice(const char* what, const std::string& which, const std::string&
 }
 
 std::vector<std::string> helpsIn(const LineReader& lines, std::string_view text, char between) {
+    if (text.empty()) throw lines.damaged("it is empty");
     std::vector<std::string> helps = partsOf(text, between);
     for (const std::string& help : helps)
         if (std::find(cases::kHelps.begin(), cases::kHelps.end(), help) == cases::kHelps.end())
@@ -71,8 +72,7 @@ Pack packFrom(std::string_view text, const std::string& where) {
     p.engine = lines.whole("engine", 0, 1'000'000);
     p.opens = lines.whole("opens_ms", 0, kMostMs), p.closes = lines.whole("closes_ms", p.opens, kMostMs);
     p.minutes = lines.whole("minutes", 1, 1440);
-    if (const std::string locked = lines.text("locked", 400); locked != "-")
-        p.locked = helpsIn(lines, locked, ' ');
+    if (const std::string locked = lines.text("locked", 400); locked != "-") p.locked = helpsIn(lines, locked, ' ');
     while (lines.isNext("candidate")) {
         const std::vector<std::string> parts = partsOf(lines.text("candidate", 400), ' ');
         if (parts.size() != 4 || !school::isHex(parts[0], 64)) throw lines.damaged("this is no candidate");
@@ -109,9 +109,9 @@ std::string candidateHash(std::string_view exam, std::string_view typedCode) {
 
 void requireFitting(const Pack& p, std::int64_t rubricFormat, std::int64_t engine) {
     if (p.rubricFormat > rubricFormat)
-        throw core::Error(fmt::format("the exam's rubric is of format {}, and this program knows {}", p.rubricFormat,
-                                      rubricFormat),
-                          p.exam, "bring this station up to date")
+        throw core::Error(
+            fmt::format("the exam's rubric is of format {}, and this program knows {}", p.rubricFormat, rubricFormat),
+            p.exam, "bring this station up to date")
             .as("exam-rubric-newer", {std::to_string(p.rubricFormat), std::to_string(rubricFormat)});
     if (p.engine != engine)
         throw core::Error(fmt::format("the school's server cuts work again with engine {}, and this station has {}",
@@ -122,9 +122,9 @@ void requireFitting(const Pack& p, std::int64_t rubricFormat, std::int64_t engin
 
 void requireOpen(const Pack& p, Milliseconds now) {
     if (now < p.opens)
-        throw core::Error(fmt::format("this exam begins {}, and it is {} at this station", clockOf(p.opens),
-                                      clockOf(now)),
-                          p.exam, "wait, or put this station's clock right")
+        throw core::Error(
+            fmt::format("this exam begins {}, and it is {} at this station", clockOf(p.opens), clockOf(now)), p.exam,
+            "wait, or put this station's clock right")
             .as("exam-early", {clockOf(p.opens), clockOf(now)});
     if (now > p.closes)
         throw core::Error(fmt::format("this exam could be begun until {}, and it is {} at this station",

@@ -108,9 +108,9 @@ bool isSigned(std::string_view text, const Signature& signature, std::string_vie
 void requireSigned(std::string_view text, const Signature& signature, std::string_view knownKey, const char* what,
                    const std::string& where) {
     if (signature.key != knownKey)
-        throw core::Error(fmt::format("{} is signed by another key ({}...)", what, signature.key.substr(0, 16)), where,
-                          fmt::format("take one of the school that this belongs to, whose key is {}...",
-                                      knownKey.substr(0, 16)))
+        throw core::Error(
+            fmt::format("{} is signed by another key ({}...)", what, signature.key.substr(0, 16)), where,
+            fmt::format("take one of the school that this belongs to, whose key is {}...", knownKey.substr(0, 16)))
             .as("exam-other-key", {what});
     if (!isSigned(text, signature, knownKey))
         throw core::Error(fmt::format("{} is not what was signed: it was changed, if only in one bit", what), where,
@@ -139,7 +139,8 @@ Signed parted(std::string_view joined, const std::string& where) {
     // Its length is known.
     constexpr std::size_t kSize = kSignatureKey.size() + kOpenDigits + 1 + 11 + kValueDigits + 1;
     if (joined.size() <= kSize)
-        throw core::Error("there is no signature at its end", where, "fetch it again").as("exam-damaged", {"", "short"});
+        throw core::Error("there is no signature at its end", where, "fetch it again")
+            .as("exam-damaged", {"", "short"});
     const std::size_t at = joined.size() - kSize;
     return {std::string(joined.substr(0, at)), signatureFrom(joined.substr(at), where)};
 }

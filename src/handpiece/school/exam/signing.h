@@ -22,7 +22,8 @@ struct Signature {
 };
 
 [[nodiscard]] SigningKey newSigningKey();
-/// Read from a file that only its owner reads; made the first time, once also where two come at once. Throws core::Error
+/// Read from a file that only its owner reads; made the first time, once also where two come at once. Throws
+/// core::Error
 /// ("key-damaged", "not-writable").
 [[nodiscard]] SigningKey keptSigningKey(const std::filesystem::path& file);
 

@@ -153,11 +153,10 @@ struct Stays {
     std::int64_t since;
     std::string_view what;
 };
-constexpr std::array kStays = {Stays{1, "attempts UPDATE"},       Stays{1, "audit UPDATE"},
-                               Stays{1, "audit DELETE"},          Stays{1, "marks UPDATE"},
-                               Stays{1, "scores UPDATE"},         Stays{1, "rubrics UPDATE"},
-                               Stays{5, "exam_packs UPDATE"},     Stays{5, "exam_entries UPDATE"},
-                               Stays{5, "exam_decisions UPDATE"}};
+constexpr std::array kStays = {
+    Stays{1, "attempts UPDATE"},   Stays{1, "audit UPDATE"},        Stays{1, "audit DELETE"},
+    Stays{1, "marks UPDATE"},      Stays{1, "scores UPDATE"},       Stays{1, "rubrics UPDATE"},
+    Stays{5, "exam_packs UPDATE"}, Stays{5, "exam_entries UPDATE"}, Stays{5, "exam_decisions UPDATE"}};
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
     for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())

@@ -82,12 +82,12 @@ std::optional<ExamSettings> ExamBooks::settings(const std::string& exam) const {
 
 void ExamBooks::set(const ExamCandidate& c, const Act& act) {
     if (!isHex(c.code, 64)) throw invalid("code of a candidate", "", "give its hash");
-    requireCount("percentage of more time", c.extraPercent, 300), requireCount("number of minutes", c.pauseMinutes, 600);
+    requireCount("percentage of more time", c.extraPercent, 300),
+        requireCount("number of minutes", c.pauseMinutes, 600);
     Transaction transaction(*state_.database);
     requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", c.exam), *state_.database, c.exam);
     state_.requirePerson(c.person);
-    if (state_.any("SELECT 1 FROM exam_codes WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code,
-                   c.person))
+    if (state_.any("SELECT 1 FROM exam_codes WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code, c.person))
         throw duplicate(*state_.database, "candidate's code in exam", c.exam);
     state_.run("INSERT INTO exam_codes (exam, code, person) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", c.exam, c.code,
                c.person);
@@ -157,8 +157,8 @@ bool ExamBooks::add(const ExamPack& p, const Act& act) {
 }
 
 std::optional<ExamPack> ExamBooks::newestPack(const std::string& exam) const {
-    Statement row = state_.ask(
-        fmt::format("{} WHERE exam = $1 ORDER BY version DESC LIMIT 1", kPackColumns).c_str(), exam);
+    Statement row =
+        state_.ask(fmt::format("{} WHERE exam = $1 ORDER BY version DESC LIMIT 1", kPackColumns).c_str(), exam);
     if (!row.next()) return {};
     return packOf(row);
 }
@@ -181,8 +181,8 @@ std::vector<std::string> ExamBooks::examsOpenAt(Milliseconds now) const {
 }
 
 ExamBooks::End ExamBooks::endOf(const std::string& station) const {
-    Statement row = state_.ask(
-        "SELECT number, hash FROM exam_entries WHERE station = $1 ORDER BY number DESC LIMIT 1", station);
+    Statement row =
+        state_.ask("SELECT number, hash FROM exam_entries WHERE station = $1 ORDER BY number DESC LIMIT 1", station);
     if (!row.next()) return {};
     return {row.integer(0), row.text(1)};
 }
@@ -255,8 +255,7 @@ std::optional<ExamSitting> ExamBooks::sitting(const std::string& id) const {
 
 std::vector<ExamSitting> ExamBooks::sittingsOf(const std::string& exam) const {
     std::vector<ExamSitting> all;
-    Statement rows =
-        state_.ask(fmt::format("{} WHERE exam = $1 ORDER BY began, id", kSittingColumns).c_str(), exam);
+    Statement rows = state_.ask(fmt::format("{} WHERE exam = $1 ORDER BY began, id", kSittingColumns).c_str(), exam);
     while (rows.next())
         all.push_back(sittingOf(rows));
     return all;
@@ -309,7 +308,8 @@ void ExamBooks::add(const ExamDecision& d, const Act& act) {
     };
     if (d.kind == "confirm" && isOpen) throw wrongNow("an appeal is open", "decide it");
     if (d.kind == "appeal" && (before.empty() || isOpen))
-        throw wrongNow(before.empty() ? "nothing was decided yet" : "an appeal is open already", "wait for the decision");
+        throw wrongNow(before.empty() ? "nothing was decided yet" : "an appeal is open already",
+                       "wait for the decision");
     if ((d.kind == "remark" || d.kind == "decide") && !isOpen)
         throw wrongNow("no appeal is open", "there is nothing to decide");
     if (d.kind == "decide" && (before.back().kind != "remark"))

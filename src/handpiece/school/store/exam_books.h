@@ -44,8 +44,8 @@ struct ExamEntry {
 struct ExamSitting {
     std::string id{}, exam{}, station{}, person{}, candidate{}, pack{}, invigilator{};
     Milliseconds began = 0;
-    std::int64_t number = 0;    ///< of the entry that began it
-    std::string state{};        ///< "begun", "given-up", "finished"
+    std::int64_t number = 0;  ///< of the entry that began it
+    std::string state{};      ///< "begun", "given-up", "finished"
     Milliseconds ended = 0;
 };
 /// Of a sitting, in their order; none is ever changed.
@@ -90,8 +90,8 @@ class ExamBooks : public BooksRoom {
     };
     [[nodiscard]] End endOf(const std::string& station) const;
     /// The next of its station's chain, checked by the caller. `begins`: the sitting that it begins; its end is told by
-    /// `entry.kind`. `attempt`: what was handed over. False: it is there already, the same. Throws "books-changed" where
-    /// another one has its number, "books-unknown" for a gap.
+    /// `entry.kind`. `attempt`: what was handed over. False: it is there already, the same. Throws "books-changed"
+    /// where another one has its number, "books-unknown" for a gap.
     bool add(const ExamEntry& entry, const ExamSitting* begins, const PushedAttempt* attempt);
     /// From its beginning to its end with all that its station noted in between.
     [[nodiscard]] std::vector<ExamEntry> entriesOf(const std::string& sitting) const;
@@ -103,8 +103,8 @@ class ExamBooks : public BooksRoom {
     void setDoubts(const std::string& sitting, const std::vector<std::string>& doubts, Milliseconds now);
     [[nodiscard]] std::vector<std::string> doubtsOf(const std::string& sitting) const;
 
-    /// Throws "books-invalid" for what cannot be decided in this state: an appeal before there is a decision, a decision
-    /// on an appeal without one, a remark by who decided before.
+    /// Throws "books-invalid" for what cannot be decided in this state: an appeal before there is a decision, a
+    /// decision on an appeal without one, a remark by who decided before.
     void add(const ExamDecision& decision, const Act& act);
     [[nodiscard]] std::vector<ExamDecision> decisionsOf(const std::string& sitting) const;
 

@@ -149,6 +149,10 @@ std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment) {
     return waiting;
 }
 
+std::vector<school_wire::Task> tasksOf(const Enrolment& enrolment) {
+    return school_wire::tasksFrom(Line(enrolment.server, enrolment.key).get("/api/v1/tasks/" + enrolment.person));
+}
+
 school_wire::Status status(const Enrolment& enrolment) {
     return school_wire::statusFrom(Line(enrolment.server, enrolment.key).get("/api/v1/status"));
 }

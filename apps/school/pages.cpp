@@ -98,6 +98,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();  // it has the points that were lost
     const bool isWhole = !attempt->files.empty() &&
                          std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
                              return core::isThere(v.books.files().path(file));

@@ -328,19 +328,9 @@ std::string HtmlReport::text() const {
         (hasViewer_ ? "; script-src " + viewerInPolicy() : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
-"
-        "<link rel=\"icon\" href=\"data:,\">
-<title>{}</title>
-{}"
-        "<style>{}{}{}{}{}</style>
-</head>
-<body>
-{}<main id=\"main\">
-{}</main>
-{}{}</body>
-</html>
-",
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n{}"
+        "<style>{}{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),
         escaped(title_), isLive_ ? "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n" : "", kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",

@@ -21,6 +21,7 @@ THIRD_PARTY = {
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",
     r"sodium\.h": r"src/handpiece/school/(store/content_files|people/secret|exam/signing)\.cpp",
+    r"openssl/": r"apps/school/jwt\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
     r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
     r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/app/.*",

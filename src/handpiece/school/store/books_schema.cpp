@@ -145,6 +145,23 @@ CREATE TABLE exam_decisions (
   kind TEXT NOT NULL CHECK (kind IN ('confirm', 'appeal', 'remark', 'decide')), verdict TEXT NOT NULL,
   points FLOAT8 NOT NULL, max_points FLOAT8 NOT NULL, words TEXT NOT NULL, made INT8 NOT NULL, place INT8 NOT NULL,
   UNIQUE (sitting, place)) STRICT;
+CREATE TABLE lti_platforms (
+  id TEXT PRIMARY KEY, issuer TEXT NOT NULL, client TEXT NOT NULL, auth_address TEXT NOT NULL,
+  token_address TEXT NOT NULL, keys_address TEXT NOT NULL, deployments TEXT NOT NULL, made INT8 NOT NULL,
+  UNIQUE (issuer, client)) STRICT;
+CREATE TABLE lti_states (
+  hash TEXT PRIMARY KEY, platform TEXT NOT NULL REFERENCES lti_platforms (id), nonce_hash TEXT NOT NULL,
+  expires INT8 NOT NULL) STRICT;
+CREATE TABLE lti_lines (
+  assignment TEXT NOT NULL REFERENCES assignments (id), person TEXT NOT NULL REFERENCES people (code),
+  platform TEXT NOT NULL REFERENCES lti_platforms (id), subject TEXT NOT NULL, address TEXT NOT NULL,
+  PRIMARY KEY (assignment, person)) STRICT;
+CREATE TABLE lti_grades (
+  number INT8 PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  person TEXT NOT NULL REFERENCES people (code), platform TEXT NOT NULL REFERENCES lti_platforms (id),
+  subject TEXT NOT NULL, address TEXT NOT NULL, body TEXT NOT NULL, tries INT8 NOT NULL, made INT8 NOT NULL,
+  next INT8 NOT NULL, sent INT8 NOT NULL, problem TEXT NOT NULL) STRICT;
+CREATE INDEX lti_grades_open ON lti_grades (next) WHERE sent = 0;
 )sql",
 };
 

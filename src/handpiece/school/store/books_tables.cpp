@@ -68,6 +68,14 @@ constexpr std::array kListed = {
     Listed{"exam_decisions",
            "t id, t sitting, t person, t kind, t verdict, r points, r max_points, t words, i made, i place",
            "sitting, place", "person = $1 OR " HANDPIECE_OF_SITTINGS},
+    Listed{"lti_platforms", "t id, t issuer, t client, t auth_address, t token_address, t keys_address, t deployments",
+           "id", nullptr},
+    Listed{"lti_lines", "t assignment, t person, t platform, t subject, t address", "assignment, person",
+           "person = $1"},
+    Listed{"lti_grades",
+           "i number, t assignment, t person, t platform, t subject, t address, t body, i tries, i made, i sent, "
+           "t problem",
+           "number", "person = $1"},
     Listed{"audit", "i number, i at, t who, t what, t about, t detail", "number",
            "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)"},
 };

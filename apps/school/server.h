@@ -20,7 +20,7 @@ struct Settings {
     std::string host = "127.0.0.1";
     int port = 8620;                   ///< 0: any that is free
     std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
-    std::size_t threads = 64;          ///< each serves one connection
+    std::size_t threads = 128;         ///< each serves one connection, also while it waits for the next question
     std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
 };
 /// Since 1970, UTC.

@@ -24,7 +24,7 @@ THIRD_PARTY = {
     r"openssl/": r"apps/school/jwt\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
     r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
-    r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/app/.*",
+    r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/(app|school)/.*",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",

@@ -12,6 +12,7 @@
 #include "handpiece/app/statements/statements.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
+#include "school/elsewhere.h"
 #include "school/http.h"
 
 namespace handpiece::school_server {
@@ -23,52 +24,9 @@ using school::LtiBooks;
 using school::Milliseconds;
 
 constexpr std::int64_t kSkewS = 120, kLongestS = 3600;
-constexpr std::size_t kMostAnswer = 1 << 18;
 constexpr const char* kClaim = "https://purl.imsglobal.org/spec/lti/claim/";
 constexpr const char* kEndpoint = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint";
 constexpr const char* kScoreScope = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
-
-struct Address {
-    std::string server, path;
-};
-Address partsOf(const std::string& address) {
-    const auto wrong = [&] {
-        return core::Error("this is no address that is called", address.substr(0, 200),
-                           "give one as https://platform.example/path")
-            .as("platform-address", {address.substr(0, 200)});
-    };
-    const std::size_t scheme = address.find("://");
-    if (scheme == address.npos ||
-        std::any_of(address.begin(), address.end(), [](char c) { return static_cast<unsigned char>(c) <= 0x20; }))
-        throw wrong();
-    const std::size_t path = std::min(address.find_first_of("/?#", scheme + 3), address.size());
-    const std::string server = address.substr(0, path), host = server.substr(scheme + 3);
-    // Without TLS only this very machine: a test, or a proxy on it.
-    const bool isHere = host == "127.0.0.1" || host.starts_with("127.0.0.1:") || host == "localhost" ||
-                        host.starts_with("localhost:");
-    if (host.empty() || host.find('@') != host.npos ||
-        !(server.starts_with("https://") || (server.starts_with("http://") && isHere)))
-        throw wrong();
-    const std::string rest = address.substr(path);
-    return {server, rest.starts_with('/') ? rest : "/" + rest};
-}
-
-Elsewhere asked(const std::string& address, const std::function<httplib::Result(httplib::Client&, const std::string&)>& ask) {
-    const Address at = partsOf(address);
-    httplib::Client http(at.server);
-    http.set_connection_timeout(10);
-    http.set_read_timeout(20);
-    http.set_follow_location(false);
-    const httplib::Result result = ask(http, at.path);
-    if (!result)
-        throw core::Error(fmt::format("the platform does not answer ({})", httplib::to_string(result.error())),
-                          at.server, "try again later")
-            .as("platform-silent", {httplib::to_string(result.error())});
-    if (result->body.size() > kMostAnswer)
-        throw core::Error("the platform answers too much", at.server, "check its address")
-            .as("platform-silent", {"too long"});
-    return {result->status, result->body};
-}
 
 /// Keys of platforms, asked for again after ten minutes, or where a token names one that is not known yet (once a
 /// minute).
@@ -208,17 +166,6 @@ std::string scoresAddress(const std::string& line) {
 
 }  // namespace
 
-Elsewhere fetch(const std::string& address) {
-    return asked(address, [](httplib::Client& http, const std::string& path) { return http.Get(path); });
-}
-Elsewhere post(const std::string& address, const std::string& body, const char* type, const std::string& bearer) {
-    return asked(address, [&](httplib::Client& http, const std::string& path) {
-        httplib::Headers headers{{"Accept", "application/json"}};
-        if (!bearer.empty()) headers.emplace("Authorization", "Bearer " + bearer);
-        return http.Post(path, headers, body, type);
-    });
-}
-
 Beginning beginLaunch(Books& books, const std::string& issuer, const std::string& client, const std::string& hint,
                       const std::string& messageHint, const std::string& ownAddress, Milliseconds now) {
     LtiBooks lti(books);
@@ -280,7 +227,7 @@ Launch takeLaunch(Books& books, const std::string& token, const std::string& sta
         const std::string line = text(endpoint, "lineitem");
         if (isStudent && !line.empty() && line.size() <= 1000 && scopes.is_array() &&
             std::find(scopes.begin(), scopes.end(), kScoreScope) != scopes.end()) {
-            (void)partsOf(line);
+            requireAddress(line);
             lti.set(school::LtiLine{id, launch.person.code, platform->id, text(c, "sub"), line});
         }
     }
@@ -312,7 +259,8 @@ std::size_t sendGrades(Books& books, const RsaKey& key, const std::function<Mill
             std::string& bearer = bearers[platform->id];
             if (bearer.empty()) bearer = bearerOf(*platform, key, clock());
             const Elsewhere answer = post(scoresAddress(grade->line.address), grade->body,
-                                          "application/vnd.ims.lis.v1.score+json", bearer);
+                                          "application/vnd.ims.lis.v1.score+json",
+                                          {{"Authorization", "Bearer " + bearer}});
             if (answer.status < 200 || answer.status > 299)
                 problem = fmt::format("the platform answers {}", answer.status);
             if (answer.status == 401) bearer.clear();

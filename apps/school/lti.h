@@ -12,16 +12,6 @@
 
 namespace handpiece::school_server {
 
-/// A request to elsewhere. Only https, or this very machine; no redirects; 256 KB of answer.
-/// Throws core::Error "platform-silent" (why) and "platform-address".
-struct Elsewhere {
-    int status = 0;
-    std::string body{};
-};
-[[nodiscard]] Elsewhere fetch(const std::string& address);
-[[nodiscard]] Elsewhere post(const std::string& address, const std::string& body, const char* type,
-                             const std::string& bearer = {});
-
 /// What a launch says, believed.
 struct Launch {
     school::Person person;

@@ -181,6 +181,7 @@ CREATE TABLE exam_decisions (
   kind TEXT NOT NULL CHECK (kind IN ('confirm', 'appeal', 'remark', 'decide')), verdict TEXT NOT NULL,
   points FLOAT8 NOT NULL, max_points FLOAT8 NOT NULL, words TEXT NOT NULL, made INT8 NOT NULL, place INT8 NOT NULL,
   UNIQUE (sitting, place)) STRICT;
+CREATE TABLE retention (scope TEXT PRIMARY KEY, days INT8 NOT NULL) STRICT;
 CREATE TABLE lti_platforms (
   id TEXT PRIMARY KEY, issuer TEXT NOT NULL, client TEXT NOT NULL, auth_address TEXT NOT NULL,
   token_address TEXT NOT NULL, keys_address TEXT NOT NULL, deployments TEXT NOT NULL, made INT8 NOT NULL,

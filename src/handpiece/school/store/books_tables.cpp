@@ -68,6 +68,7 @@ constexpr std::array kListed = {
     Listed{"exam_decisions",
            "t id, t sitting, t person, t kind, t verdict, r points, r max_points, t words, i made, i place",
            "sitting, place", "person = $1 OR " HANDPIECE_OF_SITTINGS},
+    Listed{"retention", "t scope, i days", "scope", nullptr},
     Listed{"lti_platforms", "t id, t issuer, t client, t auth_address, t token_address, t keys_address, t deployments",
            "id", nullptr},
     Listed{"lti_lines", "t assignment, t person, t platform, t subject, t address", "assignment, person",

@@ -5,6 +5,7 @@
 
 #include "handpiece/school/store/books_state.h"
 #include "handpiece/school/store/exam_books.h"
+#include "handpiece/school/store/teaching.h"
 
 namespace handpiece::school {
 namespace {
@@ -114,6 +115,17 @@ std::optional<Person> LtiBooks::personByExternal(const std::string& external) co
     return books_.person(code);
 }
 
+void LtiBooks::setExternal(const std::string& person, const std::string& external, const Act& act) {
+    if (external.size() > 255) throw invalid("external id", external, "255 characters are the most");
+    Transaction transaction(*state_.database);
+    if (state_.any("SELECT 1 FROM identities WHERE external = $1 AND external <> '' AND person <> $2", external, person))
+        throw duplicate(*state_.database, "external id", external);
+    if (!state_.any("UPDATE identities SET external = $1 WHERE person = $2 RETURNING person", external, person))
+        throw unknown(*state_.database, "person", person);
+    state_.note(act, "set external id", person);
+    transaction.commit();
+}
+
 void LtiBooks::set(const LtiLine& l) {
     Transaction transaction(*state_.database);
     state_.run(
@@ -150,7 +162,8 @@ Worth LtiBooks::worthOf(const std::string& assignment, const std::string& person
             if ((worth.verdict == "pass" || worth.verdict == "fail") && !scores.empty() && scores.back().maxScore > 0.0)
                 worth.points = scores.back().score, worth.maxPoints = scores.back().maxScore;
         } else {
-            // What a teacher has said of it, not what a machine has.
+            // What a teacher has said of it and given back, not what a machine has.
+            if (!Teaching(books_).isReleased(id)) continue;
             for (const Mark& mark : books_.marksOf(id))
                 if ((mark.kind == "teacher" || mark.kind == "adjudication") && mark.maxPoints > 0.0)
                     worth.points = mark.points, worth.maxPoints = mark.maxPoints, worth.decided = mark.made;

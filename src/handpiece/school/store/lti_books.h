@@ -63,6 +63,8 @@ class LtiBooks : public BooksRoom {
     std::optional<Begun> take(const std::string& state, Milliseconds now);
 
     [[nodiscard]] std::optional<Person> personByExternal(const std::string& external) const;
+    /// What other systems call this person; empty: nothing. Throws "books-duplicate".
+    void setExternal(const std::string& person, const std::string& external, const Act& act);
 
     void set(const LtiLine& line);
     [[nodiscard]] std::vector<LtiLine> lines() const;

@@ -13,7 +13,7 @@ namespace handpiece::school {
 
 /// What is kept so long [days]; 0: it stays.
 struct RetentionRules {
-    /// Of a class: practice that it was given to do, from when it was finished on, also while the class goes on.
+    /// Of a class: practice that it was given to do, from when it came on, also while the class goes on.
     std::int64_t practiceDays = 0;
     /// Of a class: all of its attempts, after it was closed (SchoolClass::retentionDays).
     std::int64_t closedDays = 0;
@@ -37,7 +37,7 @@ class Retention : public BooksRoom {
     void setForPersonal(std::int64_t days, const Act& act);
     [[nodiscard]] std::int64_t ofPersonal() const;
 
-    /// By their ids. Exams stay until their class is closed and its time is over; shared practice as any.
+    /// By their ids. Exams, and work that is an exemplar, stay until their class is closed and its time is over.
     [[nodiscard]] std::vector<Expiring> expiring(Milliseconds now) const;
     /// They go, with all that hangs on them and the files that nobody else has, each with its line in the audit.
     /// Returns how many.

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "handpiece/school/store/exam_books.h"
+#include "handpiece/school/store/retention.h"
 #include "school/store/books_fixture.h"
 #include "support/error_of.h"
 #include "support/random.h"
@@ -142,6 +143,58 @@ TEST_P(BooksTest, OfExamsRefuseWhatCannotBeAndWriteNothingOfIt) {
     for (const char* what : {"UPDATE exam_decisions SET verdict = 'fail'", "UPDATE exam_entries SET at = 0",
                              "UPDATE exam_packs SET text = ''"})
         EXPECT_ANY_THROW(sql(what)) << what;
+}
+
+TEST_P(BooksTest, OfPracticeLetGoWhatNeedNotBeKeptAndTellItBefore) {
+    auto books = filled();
+    makeExam(*books);
+    Retention retention(*books);
+    const auto ids = [&](Milliseconds now) {
+        std::vector<std::string> all;
+        for (const Expiring& one : retention.expiring(now))
+            all.push_back(one.attempt);
+        return all;
+    };
+    const auto pushed = [&](std::uint64_t number, const char* assignment, const std::string& file, Milliseconds came) {
+        PushedAttempt p = attempt(number, {file});
+        p.assignment = assignment, p.received = came;
+        p.attempt.finished = kNow + 9000 * kDay;  // its station's clock is wrong by decades
+        EXPECT_TRUE(books->push(p));
+    };
+    upload(*books, "one"), upload(*books, "shared");
+    pushed(1, "a1", "one", kNow), pushed(2, "a1", "shared", kNow + 5 * kDay), pushed(3, "", "shared", kNow);
+    pushed(4, "ex1", "exam", kNow), pushed(5, "a1", "exemplar", kNow);
+    sql("INSERT INTO exemplars (attempt, assignment, content, who, made) VALUES ('" + id(5) + "', 'a1', '', 't1', 0)");
+    EXPECT_THAT(ids(kNow + 9000 * kDay), IsEmpty()) << "nobody has set anything";
+    EXPECT_EQ(errorIdOf([&] { retention.setForPersonal(-1, kAdmin); }), "books-invalid");
+    EXPECT_EQ(errorIdOf([&] { retention.setForClass("c9", {}, kAdmin); }), "books-unknown");
+    EXPECT_EQ(errorIdOf([&] { retention.setForClass("c1", {40'000, 0}, kAdmin); }), "books-invalid");
+    retention.setForClass("c1", {10, 365}, kAdmin);
+    EXPECT_EQ(retention.ofClass("c1").practiceDays, 10);
+    EXPECT_THAT(ids(kNow + 10 * kDay - 1), IsEmpty());
+    EXPECT_THAT(ids(kNow + 10 * kDay), ElementsAre(id(1)));
+    EXPECT_EQ(retention.expiring(kNow + 10 * kDay).front().bytes, 3u);
+    EXPECT_THAT(ids(kNow + 15 * kDay), ElementsAre(id(1), id(2)));
+    retention.setForPersonal(2, kAdmin);
+    EXPECT_THAT(ids(kNow + 2 * kDay), ElementsAre(id(3)));
+    const std::string before = dump();
+    (void)ids(kNow + 15 * kDay);
+    EXPECT_EQ(dump(), before) << "to tell it changes nothing";
+    EXPECT_EQ(retention.expire({"server", kNow + 10 * kDay}), 2);
+    EXPECT_FALSE(books->attempt(id(1)) || books->attempt(id(3)));
+    EXPECT_FALSE(books->files().has(sha256("one")));
+    EXPECT_TRUE(books->files().has(sha256("shared"))) << "another has it";
+    EXPECT_EQ(retention.expire({"server", kNow + 15 * kDay}), 1);
+    EXPECT_FALSE(books->files().has(sha256("shared")));
+    std::size_t audited = 0;
+    for (const AuditLine& line : books->audit(0, 1000))
+        audited += line.what == "expire" ? 1 : 0;
+    EXPECT_EQ(audited, 3u);
+    // Exams and exemplars stay until the class's own time is over.
+    EXPECT_TRUE(books->attempt(id(4)) && books->attempt(id(5)));
+    books->close("c1", {"admin", kNow + 20 * kDay});
+    EXPECT_THAT(ids(kNow + 385 * kDay - 1), IsEmpty());
+    EXPECT_EQ(retention.expire({"server", kNow + 385 * kDay}), 2);
 }
 
 TEST(BooksOfBothDatabases, HaveTheSameExams) {

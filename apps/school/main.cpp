@@ -9,6 +9,8 @@ int main(int argc, char** argv) {
              handpiece::school_cli::addServeCommand(top);
              handpiece::school_cli::addBooksCommands(top);
              handpiece::school_cli::addStationCommands(top);
+             handpiece::school_cli::addExamCommands(top);
+             handpiece::school_cli::addElsewhereCommands(top);
              handpiece::school_cli::addLiveCommands(top);
          }});
 }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "school/commands.h"
 #include "school/server.h"
 #include "school/worker.h"
@@ -17,7 +18,8 @@ namespace handpiece::school_cli {
 namespace {
 
 struct ServeOptions {
-    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key;
+    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key, address, signOnSecret, signOnHeader = "X-Handpiece-User";
+    std::vector<std::string> signOnProxies;
     std::size_t workers = 1;
     bool worker = false;
 };
@@ -25,6 +27,16 @@ struct ServeOptions {
 void waitForInterrupt(const std::atomic<bool>& ended) {
     while (!studies::cancelled() && !ended)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
+}
+
+std::string secretIn(const std::string& file) {
+    const std::vector<std::byte> bytes = core::readFile(file, 4096);
+    std::string secret(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    while (!secret.empty() && (secret.back() == '\n' || secret.back() == ' '))
+        secret.pop_back();
+    if (secret.size() < 32)
+        throw core::Error("the proxy's secret is too short", file, "32 characters or more, by chance: openssl rand -hex 32");
+    return secret;
 }
 
 void serve(const ServeOptions& o) {
@@ -42,6 +54,14 @@ void serve(const ServeOptions& o) {
     settings.data = o.data, settings.database = o.database;
     settings.certificate = o.certificate, settings.key = o.key;
     settings.workers = o.workers;
+    settings.address = o.address;
+    while (settings.address.ends_with('/'))
+        settings.address.pop_back();
+    settings.signOn.proxies = o.signOnProxies, settings.signOn.header = o.signOnHeader;
+    if (!o.signOnSecret.empty()) settings.signOn.secret = secretIn(o.signOnSecret);
+    if (o.signOnProxies.empty() != settings.signOn.secret.empty())
+        throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
+                          "give both --sign-on-proxy and --sign-on-secret, or neither");
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')
@@ -79,6 +99,11 @@ void addServeCommand(cli::Command& app) {
     command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do")
         .check(cli::range(std::size_t{0}, std::size_t{64}))
         .showDefault();
+    command.option("--address", o.address, "as browsers know it, https://school.example: for log-ins by LTI");
+    command.option("--sign-on-proxy", o.signOnProxies, "address of a proxy that vouches for who logs in; several times")
+        .takeAll();
+    command.option("--sign-on-secret", o.signOnSecret, "file with the secret that it sends");
+    command.option("--sign-on-header", o.signOnHeader, "in which it names who logs in").showDefault();
     command.flag("--worker", o.worker, "only work: cut sessions again for the same books");
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
     command.callback([options] { serve(*options); });

@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
 #include "school/answers.h"
+#include "school/housekeeper.h"
 #include "school/routes.h"
 #include "school/wire.h"
 #include "school/worker.h"
@@ -30,7 +31,7 @@ constexpr time_t kKeepAliveS = 5;
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
-    for (const auto room : {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes})
+    for (const auto room : {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;
@@ -156,6 +157,7 @@ struct Server::State : Service {
     std::unique_ptr<httplib::Server> http;
     int port = -1;
     std::vector<std::unique_ptr<Worker>> workers;
+    Housekeeper house{*this};
 };
 
 std::vector<Route> Server::routes() {
@@ -175,7 +177,9 @@ int Server::port() const {
 void Server::run() {
     for (const auto& worker : state_->workers)
         worker->start();
+    if (state_->settings.keepsHouse) state_->house.start();
     state_->http->listen_after_bind();
+    state_->house.stop();
     for (const auto& worker : state_->workers)
         worker->stop();
 }

@@ -245,7 +245,9 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
-        state_->run("DELETE FROM logins WHERE person = $1", code);
+        for (const char* sql :
+             {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1"})
+            state_->run(sql, code);
         state_->note(act, "erase", code);
     }
     transaction.commit();
@@ -258,6 +260,9 @@ void Books::addLogin(const std::string& token, const std::string& person, Millis
     Transaction transaction(*state_->database);
     if (!state_->any("SELECT 1 FROM identities WHERE person = $1", person))
         throw unknown(*state_->database, "person", person);
+    if (state_->any("SELECT 1 FROM suspensions WHERE person = $1", person))
+        throw core::Error("this account is suspended", person, "an administrator can open it again")
+            .as("account-suspended", {person});
     state_->run("DELETE FROM logins WHERE person = $1 AND expires <= $2", person, act.at);
     if (!state_->any("INSERT INTO logins (token_hash, person, made, expires) VALUES ($1, $2, $3, $4) "
                      "ON CONFLICT DO NOTHING RETURNING person",

@@ -102,6 +102,9 @@ CREATE INDEX logins_by_person ON logins (person);
 )sql",
     // Operation of a server.
     R"sql(
+CREATE TABLE suspensions (person TEXT PRIMARY KEY REFERENCES people (code), made INT8 NOT NULL) STRICT;
+CREATE TABLE password_codes (
+  person TEXT PRIMARY KEY REFERENCES people (code), hash TEXT NOT NULL, expires INT8 NOT NULL) STRICT;
 )sql",
     // Teaching: marking, standards, exemplars.
     R"sql(

@@ -79,6 +79,10 @@ std::string tokenOf(const Request& request) {
     return {};
 }
 
+std::string sentBy(const Request& request, const char* name) {
+    return request.is_multipart_form_data() ? request.get_file_value(name).content : request.get_param_value(name);
+}
+
 std::uint64_t numberOf(const Request& request, const char* name) {
     const std::string text = request.get_param_value(name);
     std::uint64_t value = 0;

@@ -129,7 +129,7 @@ struct Server::State : Service {
         const Visit visit{*open, *person, token, now};
         // What changes something came from a page of this very log-in.
         if (std::string_view(entry.method) == "POST" &&
-            !school::isSameSecret(request.get_param_value("token"), school::requestTokenOf(token)))
+            !school::isSameSecret(sentBy(request, "token"), school::requestTokenOf(token)))
             return answer(response, refused(config::words()("school.gone"), 403), isSecure());
         answer(response, std::get<Shown>(entry.answer)(request, visit), isSecure());
     }

@@ -25,7 +25,9 @@ std::optional<Role> roleIn(const Books& books, const std::string& schoolClass, c
 }
 
 report::Looker lookerOf(const Visit& v) {
-    return {v.person.code, v.person.name, school::requestTokenOf(v.token)};
+    // A way for each room of pages, to those who may see it.
+    std::vector<report::HtmlReport::Way> ways;
+    return {v.person.code, v.person.name, school::requestTokenOf(v.token), std::move(ways)};
 }
 
 Relation relationToClass(const Visit& v, const std::string& schoolClass) {

@@ -42,7 +42,7 @@ td.yes { color: #1d7a3f; } td.no { color: #c62828; font-weight: 600; }
 .thirds { display: grid; grid-template-columns: repeat(3, minmax(0, 1fr)); gap: 0.6rem; align-items: end; } .thirds figure { margin: 0; }
 .slices img { max-height: 90mm; object-fit: contain; background: #000; }
 .frame { border: 1.5px solid #0b62a4; border-radius: 8px; padding: 0.2rem 1.2rem; background: #f2f7fc; }
-label { display: inline-block; min-width: 8rem; } input, button { font: inherit; padding: 0.3rem 0.6rem; } a { color: #0b62a4; }
+a { color: #0b62a4; }
 figure { margin: 1rem 0; } .pictures figure, .slices figure { margin: 0; }
 figure svg, figure img { width: 100%; height: auto; display: block; }
 figcaption { color: #59636f; font-size: 0.85rem; margin-top: 0.3rem; }
@@ -54,6 +54,23 @@ tbody tr:hover { background: #1d232d; } .note, caption, figcaption { color: #9aa
 a { color: #6cb6ff; } td.yes, .good { color: #66c98c; } td.no, .bad { color: #ff7b72; } }
 @media print { body { font-size: 10.5pt; margin: 0; padding: 0; max-width: none; } h2 { break-after: avoid; }
 figure, tr, .frame { break-inside: avoid; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } }
+)";
+
+/// Of a server's pages on top of it.
+constexpr std::string_view kSiteStyle = R"(
+body { max-width: 1200px; margin-top: 0; }
+.skip { position: absolute; left: -99rem; } .skip:focus { left: 0.5rem; top: 0.5rem; background: #ffffff; padding: 0.4rem; }
+.site { display: flex; flex-wrap: wrap; gap: 0.3rem 1.2rem; align-items: center; border-bottom: 1px solid #c9ced6; padding: 0.5rem 0; margin-bottom: 1.2rem; }
+.site nav { display: flex; flex-wrap: wrap; gap: 0.3rem 1.2rem; flex: 1; } .site nav a[aria-current] { font-weight: 600; text-decoration: none; color: inherit; }
+.site form, .site form p { margin: 0; display: inline; }
+input, button, select, textarea { font: inherit; padding: 0.3rem 0.6rem; color: inherit; background: #ffffff; border: 1px solid #767f8c; border-radius: 4px; }
+textarea { width: 100%; box-sizing: border-box; } button { cursor: pointer; background: #eef1f5; } button.grave { color: #a41b1b; border-color: #a41b1b; }
+:focus-visible { outline: 3px solid #0b62a4; outline-offset: 1px; }
+.field label { display: inline-block; min-width: 11rem; } .tick { display: flex; flex-direction: row-reverse; justify-content: flex-end; gap: 0.4rem; flex-wrap: wrap; }
+fieldset { border: 1px solid #c9ced6; border-radius: 6px; margin: 0.8rem 0; } .choice label { margin-right: 1.2rem; }
+@media (prefers-color-scheme: dark) { .site, fieldset { border-color: #3a4250; } .skip:focus { background: #14181f; }
+input, button, select, textarea { background: #1d232d; border-color: #8a93a3; } button.grave { color: #ff7b72; border-color: #ff7b72; } }
+@media print { .site { display: none; } }
 )";
 
 std::string base64(std::span<const std::byte> bytes) {
@@ -189,21 +206,31 @@ void HtmlReport::linkedTable(const std::vector<std::string>& header, const std::
     body_ += "</tbody></table></div>\n";
 }
 
-void HtmlReport::form(std::string_view address, const std::vector<Field>& fields, std::string_view button) {
-    hasForm_ = true;
-    body_ += fmt::format("<form method=\"post\" action=\"{}\">\n", escaped(address));
-    for (const Field& f : fields) {
-        if (f.kind == "hidden")
-            body_ +=
-                fmt::format("<input type=\"hidden\" name=\"{}\" value=\"{}\">\n", escaped(f.name), escaped(f.value));
-        else
-            body_ += fmt::format(
-                "<p><label for=\"{0}\">{1}</label> <input id=\"{0}\" name=\"{0}\" type=\"{2}\" value=\"{3}\" "
-                "autocomplete=\"{4}\"></p>\n",
-                escaped(f.name), escaped(f.label), escaped(f.kind), escaped(f.value),
-                f.kind == "password" ? "current-password" : "username");
-    }
-    body_ += fmt::format("<p><button type=\"submit\">{}</button></p>\n</form>\n", escaped(button));
+void HtmlReport::form(const Form& form) {
+    body_ += toHtml(form, ++forms_);
+}
+
+void HtmlReport::ofSite(const std::vector<Way>& ways, std::string_view who, const std::optional<Form>& logOut) {
+    const auto words = [](const char* id) { return escaped(config::words()(id)); };
+    site_ = fmt::format("<a class=\"skip\" href=\"#main\">{}</a>\n<header class=\"site\">", words("school.skip"));
+    if (!ways.empty()) site_ += fmt::format("<nav aria-label=\"{}\">", words("school.ways"));
+    for (const Way& way : ways)
+        site_ += fmt::format("<a href=\"{}\"{}>{}</a> ", escaped(way.address),
+                             way.isHere ? " aria-current=\"page\"" : "", escaped(way.text));
+    if (!ways.empty()) site_ += "</nav>";
+    if (logOut) site_ += fmt::format("<span>{}</span>{}", escaped(who), toHtml(*logOut, 0));
+    site_ += "</header>\n";
+}
+
+void HtmlReport::script(std::string_view address, std::string_view json) {
+    script_ = fmt::format(
+        "<script type=\"application/json\" id=\"page-data\">{}</script>\n<script type=\"module\" "
+        "src=\"{}\"></script>\n",
+        json, escaped(address));
+}
+
+void HtmlReport::place(std::string_view id, std::string_view without) {
+    body_ += fmt::format("<section id=\"{}\"><p class=\"missing\">{}</p></section>\n", escaped(id), escaped(without));
 }
 
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
@@ -276,17 +303,19 @@ void HtmlReport::end() {
 }
 
 std::string HtmlReport::text() const {
+    const bool isSite = !site_.empty();
     const std::string policy =
         fmt::format("default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action '{}'",
-                    hasForm_ ? "self" : "none") +
+                    forms_ > 0 ? "self" : "none") +
         (hasViewer_ ? fmt::format("; script-src 'sha256-{}'", scriptHash()) : std::string());
     return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
+        "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
         "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
-        "<style>{}{}{}</style>\n</head>\n<body>\n{}{}</body>\n</html>\n",
-        config::words().language(), policy, escaped(title_), kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
-        body_, hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string());
+        "<style>{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
+        config::words().language(),
+        isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),
+        escaped(title_), kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "", isSite ? kSiteStyle : "", site_, body_,
+        hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string(), script_);
 }
 
 }  // namespace handpiece::report

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "handpiece/app/report/html_form.h"
 #include "handpiece/app/report/review.h"
 #include "handpiece/senses/view/image.h"
 
@@ -35,9 +36,10 @@ class HtmlReport {
     struct Cell {
         std::string text, address{};
     };
-    /// What a person fills in; `kind` as HTML has it: "text", "password", "hidden".
-    struct Field {
-        std::string name, label, kind = "text", value{};
+    /// A way to elsewhere in the same site.
+    struct Way {
+        std::string address, text;
+        bool isHere = false;
     };
 
     /// All text is escaped.
@@ -56,8 +58,7 @@ class HtmlReport {
     /// As table(), cells as they are.
     void linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                      std::string_view caption = {});
-    /// Sent to `address` by its one button.
-    void form(std::string_view address, const std::vector<Field>& fields, std::string_view button);
+    void form(const Form& form);
     /// What, and how much.
     void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.
@@ -75,13 +76,21 @@ class HtmlReport {
     void review(const Review& review);
     void begin(Group group);
     void end();
+    /// Makes it a page of a server: wide, with ways to the others and who is logged in over it; its policy comes with
+    /// it over HTTP. `logOut`: a form of one button; none: nobody is logged in.
+    void ofSite(const std::vector<Way>& ways, std::string_view who, const std::optional<Form>& logOut);
+    /// A module of the server, and what it needs to know, as JSON without '<'. Once a page.
+    void script(std::string_view address, std::string_view json);
+    /// A place of its own for a module to draw in, with what stands there without script.
+    void place(std::string_view id, std::string_view without);
     /// The page.
     [[nodiscard]] std::string text() const;
 
   private:
-    std::string title_, body_;
+    std::string title_, body_, site_, script_;
     std::optional<std::size_t> reviewAt_;
-    bool hasViewer_ = false, hasForm_ = false;
+    bool hasViewer_ = false;
+    int forms_ = 0;
 };
 
 }  // namespace handpiece::report

@@ -32,13 +32,6 @@ std::string shownAs(const Names& names, const std::string& code) {
     return found != names.end() && !found->second.empty() ? found->second : code;
 }
 
-/// Where one is, who one is, and the way out.
-void addHead(HtmlReport& page, const Looker& who) {
-    page.paragraph(words()("school.logged-in", who.name.empty() ? who.code : who.name), Tone::note);
-    page.link("/classes", words()("school.classes"));
-    page.form("/logout", {{"token", "", "hidden", who.requestToken}}, words()("school.log-out"));
-}
-
 }  // namespace
 
 std::string momentOf(school::Milliseconds since1970) {
@@ -47,30 +40,47 @@ std::string momentOf(school::Milliseconds since1970) {
     return text;
 }
 
+HtmlReport sitePage(std::string title, const Looker& who, std::string_view address) {
+    HtmlReport page(std::move(title));
+    std::vector<HtmlReport::Way> ways{{"/classes", words()("school.classes")},
+                                      {"/people/" + who.code, words()("school.own-work")}};
+    for (const HtmlReport::Way& way : who.ways)
+        ways.push_back(way);
+    for (HtmlReport::Way& way : ways)
+        way.isHere = way.address == address;
+    page.ofSite(ways, words()("school.logged-in", who.name.empty() ? who.code : who.name),
+                Form{"/logout", {tokenField(who)}, {{words()("school.log-out")}}});
+    return page;
+}
+
+FormField tokenField(const Looker& who) {
+    return {"token", {}, "hidden", who.requestToken};
+}
+
 std::string loginPage(const std::string& login, const std::string& wrong) {
     HtmlReport page(words()("school.title"));
+    page.ofSite({}, {}, {});
     if (!wrong.empty()) page.paragraph(wrong, Tone::bad);
-    page.form("/login",
-              {{"login", words()("school.login"), "text", login}, {"password", words()("school.password"), "password"}},
-              words()("school.log-in"));
+    FormField name{"login", words()("school.login"), "text", login},
+        password{"password", words()("school.password"), "password"};
+    name.complete = "username", password.complete = "current-password";
+    name.isRequired = password.isRequired = true;
+    page.form({"/login", {name, password}, {{words()("school.log-in")}}});
     return page.text();
 }
 
 std::string classesPage(const Looker& who, const std::vector<school::SchoolClass>& classes) {
-    HtmlReport page(words()("school.classes"));
-    addHead(page, who);
+    HtmlReport page = sitePage(words()("school.classes"), who, "/classes");
     if (classes.empty()) page.paragraph(words()("school.no-classes"), Tone::missing);
     std::vector<std::vector<Cell>> rows;
     for (const school::SchoolClass& one : classes)
         rows.push_back({{one.name, "/classes/" + one.id}, {one.closed > 0 ? words()("school.closed") : ""}});
     if (!rows.empty()) page.linkedTable({words()("school.class"), ""}, rows);
-    page.link("/people/" + who.code, words()("school.own-work"));
     return page.text();
 }
 
 std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names) {
-    HtmlReport page(of.schoolClass.name);
-    addHead(page, who);
+    HtmlReport page = sitePage(of.schoolClass.name, who);
     std::vector<std::string> header{words()("class.student")};
     for (const school::Assignment& assignment : of.assignments)
         header.push_back(assignment.title);
@@ -103,8 +113,7 @@ std::string classPage(const Looker& who, const school::ClassPage& of, const Name
 
 std::string personPage(const Looker& who, const std::string& person, const Names& names,
                        const std::vector<std::pair<school::PushedAttempt, std::optional<school::Score>>>& work) {
-    HtmlReport page(shownAs(names, person));
-    addHead(page, who);
+    HtmlReport page = sitePage(shownAs(names, person), who, "/people/" + person);
     std::vector<std::vector<Cell>> rows;
     for (auto one = work.rbegin(); one != work.rend(); ++one) {
         const school::Attempt& a = one->first.attempt;
@@ -129,8 +138,7 @@ std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const
                         const std::vector<school::Score>& scores, const std::vector<school::Mark>& marks,
                         const std::vector<school::Comment>& comments) {
     const school::Attempt& a = p.attempt;
-    HtmlReport page(fmt::format("{}: {}", shownAs(names, p.person), a.exercise));
-    addHead(page, who);
+    HtmlReport page = sitePage(fmt::format("{}: {}", shownAs(names, p.person), a.exercise), who);
     if (scores.empty()) {
         page.paragraph(words()("school.waits"), Tone::missing);
     } else {
@@ -164,6 +172,7 @@ std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const
 
 std::string refusalPage(const std::string& what, const std::string& remedy) {
     HtmlReport page(words()("school.title"));
+    page.ofSite({}, {}, {});
     page.paragraph(what, Tone::bad);
     if (!remedy.empty()) page.paragraph(remedy, Tone::note);
     page.link("/classes", words()("school.classes"));

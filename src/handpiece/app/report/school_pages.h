@@ -6,8 +6,10 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "handpiece/app/report/report_html.h"
 #include "handpiece/school/store/books.h"
 
 namespace handpiece::report {
@@ -15,10 +17,16 @@ namespace handpiece::report {
 /// Who looks.
 struct Looker {
     std::string code, name;
-    std::string requestToken;  ///< of this log-in's forms
+    std::string requestToken;             ///< of this log-in's forms
+    std::vector<HtmlReport::Way> ways{};  ///< to what they may see beside classes and their own work
 };
 /// Codes, and the names of those whose name one may see.
 using Names = std::map<std::string, std::string>;
+
+/// A page with its head: ways, who is logged in, *Log out*. `address`: where it stands, so that its way is marked.
+[[nodiscard]] HtmlReport sitePage(std::string title, const Looker& who, std::string_view address = {});
+/// Every form that changes something has it.
+[[nodiscard]] FormField tokenField(const Looker& who);
 
 [[nodiscard]] std::string loginPage(const std::string& login, const std::string& wrong);
 [[nodiscard]] std::string classesPage(const Looker& who, const std::vector<school::SchoolClass>& classes);

@@ -28,14 +28,16 @@ struct PeopleOptions {
     std::size_t days = 14;
 };
 
-Act now() {
+Act actOfServer() {
     return {"server", school_server::systemClock()()};
 }
 
 /// A code for each who is new and has a login, to be cut into slips.
 void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, const PeopleOptions& o) {
-    const Act act = now();
-    std::string csv = "\xef\xbb\xbf" "login,name,code\r\n";
+    const Act act = actOfServer();
+    std::string csv =
+        "\xef\xbb\xbf"
+        "login,name,code\r\n";
     std::size_t count = 0;
     for (const school::RosterChange& change : changes) {
         if (change.kind != school::RosterChange::Kind::addPerson) continue;
@@ -57,7 +59,7 @@ void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, 
 }
 
 void importPeople(const PeopleOptions& o) {
-    const Act act = now();
+    const Act act = actOfServer();
     school::Roster roster = school::readRoster(o.file, school_server::today(act.at));
     if (!roster.isExternal) roster.hasAllEnrolments = o.isWhole;
     Books books(o.data, o.database);
@@ -73,7 +75,7 @@ void importPeople(const PeopleOptions& o) {
 
 void exportOne(const PeopleOptions& o) {
     Books books(o.data, o.database);
-    school::exportPerson(books, o.code, o.out, now());
+    school::exportPerson(books, o.code, o.out, actOfServer());
     fmt::print("{}\n", o.out);
 }
 
@@ -84,7 +86,7 @@ void eraseOne(const PeopleOptions& o) {
     if (!o.yes)
         throw core::Error(fmt::format("{} ({}) would be erased, which cannot be taken back", person->name, o.code),
                           "--yes", "say it to do it; handpiece school people export first gives them what is theirs");
-    books.erase(o.code, now());
+    books.erase(o.code, actOfServer());
     fmt::print("{} is erased; what they did stays under the code\n", o.code);
 }
 
@@ -107,21 +109,24 @@ void addPeopleCommands(cli::Command& app) {
     import.flag("--administrators", o.administrators, "the list may make people administrators");
     import.flag("--ends-many", o.endsMany, "so many are missing in it because they are gone");
     import.option("--codes", o.codes, "a file for one-time codes of those who are new");
-    import.option("--days", o.days, "that these hold").check(cli::range(std::size_t{1}, std::size_t{365})).showDefault();
+    import.option("--days", o.days, "that these hold")
+        .check(cli::range(std::size_t{1}, std::size_t{365}))
+        .showDefault();
     import.footer("Example:\n  handpiece school people import --data /srv/handpiece --dry-run class-list.csv");
-    import.callback([options] { importPeople(*options); });
+    import.callback([options] { importPeople(*options);
+});
 
-    cli::Command exported = people.subcommand("export", "All that is held of a person, as a zip for them");
-    books(exported);
-    exported.option("PERSON", o.code, "their code").required();
-    exported.option("--out", o.out, "the zip").required();
-    exported.callback([options] { exportOne(*options); });
+cli::Command exported = people.subcommand("export", "All that is held of a person, as a zip for them");
+books(exported);
+exported.option("PERSON", o.code, "their code").required();
+exported.option("--out", o.out, "the zip").required();
+exported.callback([options] { exportOne(*options); });
 
-    cli::Command erased = people.subcommand("erase", "The name goes, and what leads to it; what they did stays");
-    books(erased);
-    erased.option("PERSON", o.code, "their code").required();
-    erased.flag("--yes", o.yes, "do it: it cannot be taken back");
-    erased.callback([options] { eraseOne(*options); });
-}
+cli::Command erased = people.subcommand("erase", "The name goes, and what leads to it; what they did stays");
+books(erased);
+erased.option("PERSON", o.code, "their code").required();
+erased.flag("--yes", o.yes, "do it: it cannot be taken back");
+erased.callback([options] { eraseOne(*options); });
+}  // namespace handpiece::school_cli
 
 }  // namespace handpiece::school_cli

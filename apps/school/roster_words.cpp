@@ -9,12 +9,11 @@ namespace handpiece::school_server {
 
 std::string inWords(const school::RosterChange& c) {
     using Kind = school::RosterChange::Kind;
-    static constexpr const char* kWords[] = {"school-office.add-person",   "school-office.rename",
-                                             "school-office.set-roles",    "school-office.suspend-person",
-                                             "school-office.resume-person", "school-office.add-class",
-                                             "school-office.rename-class", "school-office.close-class",
-                                             "school-office.open-class",   "school-office.enrol-person",
-                                             "school-office.leave-class"};
+    static constexpr const char* kWords[] = {
+        "school-office.add-person",     "school-office.rename",        "school-office.set-roles",
+        "school-office.suspend-person", "school-office.resume-person", "school-office.add-class",
+        "school-office.rename-class",   "school-office.close-class",   "school-office.open-class",
+        "school-office.enrol-person",   "school-office.leave-class"};
     const bool isClass = c.kind >= Kind::addClass && c.kind <= Kind::openClass;
     return config::words()(kWords[static_cast<std::size_t>(c.kind)], isClass ? c.schoolClass : c.person, c.name,
                            c.detail);

@@ -70,7 +70,8 @@ void writeLargePackage(const fs::path& file, const PackageFiles& small, const st
         for (const auto& [name, bytes] : small)
             add(name, zip_source_buffer(archive.get(), bytes.data(), bytes.size(), 0), true);
         for (const auto& [name, path] : onDisk)
-            add(name, zip_source_file(archive.get(), path.c_str(), 0, -1), !name.starts_with("files/") && !name.ends_with(".h5"));
+            add(name, zip_source_file(archive.get(), path.c_str(), 0, -1),
+                !name.starts_with("files/") && !name.ends_with(".h5"));
         struct Told {
             const core::Progress& progress;
             bool isCancelled = false;
@@ -127,8 +128,8 @@ void LargePackage::read(const std::string& name, const std::function<void(std::s
         return core::Error(fmt::format("\"{}\" in it is damaged", name), where_, "copy the file again, or take another")
             .as("not-a-package", {name});
     };
-    const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> entry(
-        zip_fopen(state_->archive.get(), name.c_str(), 0), &zip_fclose);
+    const std::unique_ptr<zip_file_t, decltype(&zip_fclose)> entry(zip_fopen(state_->archive.get(), name.c_str(), 0),
+                                                                   &zip_fclose);
     if (!entry) throw damaged();
     std::vector<std::byte> bytes(1 << 18);
     std::uint64_t all = 0;

@@ -46,8 +46,10 @@ std::string csvOf(const BookTable& table) {
 constexpr const char* kAbout =
     "All that this school's server holds of one person, {}.\n\n"
     "tables/*.csv     each table of the server's books, the lines that are about them; open with any spreadsheet\n"
-    "                 program. Times are milliseconds since 1970-01-01 (UTC). audit.csv: who looked at what, and when.\n"
-    "sessions/*.h5    recordings of their work, by their SHA-256 (HDF5; handpiece replay, or h5dump); which belongs to\n"
+    "                 program. Times are milliseconds since 1970-01-01 (UTC). audit.csv: who looked at what, and "
+    "when.\n"
+    "sessions/*.h5    recordings of their work, by their SHA-256 (HDF5; handpiece replay, or h5dump); which belongs "
+    "to\n"
     "                 which attempt stands in tables/attempt_files.csv\n\n"
     "Passwords and codes are kept as hashes only and are not in here.\n";
 

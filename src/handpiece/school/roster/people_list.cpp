@@ -15,16 +15,9 @@ namespace {
 constexpr std::array<std::string_view, 6> kColumns = {"code", "name", "login", "role", "class", "class role"};
 constexpr std::array<std::string_view, 4> kRoles = {"student", "teacher", "examiner", "administrator"};
 
-std::string small(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
-}
-
 std::vector<std::string> rolesIn(const Spreadsheet& table, const Spreadsheet::Row& row, std::string_view column) {
     std::set<std::string> roles;
-    const std::string text = small(table.cell(row, column));
+    const std::string text = inSmallLetters(table.cell(row, column));
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t end = std::min(text.find_first_of(" ,;/+", at), text.size());
         if (const std::string one = text.substr(at, end - at); !one.empty()) {
@@ -55,10 +48,9 @@ Roster peopleList(std::string_view bytes, const std::string& where) {
     const Spreadsheet table = Spreadsheet::parse(bytes, where);
     table.require({"code"});
     Roster roster;
-    roster.hasAllEnrolments = true;
     std::string unread;
     for (const std::string& name : table.names())
-        if (!name.empty() && std::find(kColumns.begin(), kColumns.end(), small(name)) == kColumns.end())
+        if (!name.empty() && std::find(kColumns.begin(), kColumns.end(), inSmallLetters(name)) == kColumns.end())
             unread += (unread.empty() ? "" : ", ") + name;
     if (!unread.empty()) roster.notices.push_back(fmt::format("columns that are not read: {}", unread));
     std::map<std::string, std::size_t> placeOf;

@@ -15,8 +15,8 @@ namespace {
 constexpr std::size_t kMostColumns = 500;
 constexpr const char* kSaveAnew = "save it as \"CSV UTF-8\"";
 
-[[noreturn]] void fail(const std::string& where, std::size_t line, const std::string& problem,
-                       const std::string& remedy) {
+[[noreturn]] void refuse(const std::string& where, std::size_t line, const std::string& problem,
+                         const std::string& remedy) {
     const std::string place = fmt::format("{}, line {}", where, line);
     throw core::Error(problem, place, remedy).as("list-unfit", {place, problem});
 }
@@ -41,13 +41,13 @@ std::string fromUtf16(std::string_view bytes, bool isBigEndian, const std::strin
         std::uint32_t c = unit(i);
         if (c >= 0xd800 && c < 0xe000) {
             const std::uint32_t second = c < 0xdc00 && i + 3 < bytes.size() ? unit(i + 2) : 0;
-            if (second < 0xdc00 || second >= 0xe000) fail(where, line, "half a character stands here", kSaveAnew);
+            if (second < 0xdc00 || second >= 0xe000) refuse(where, line, "half a character stands here", kSaveAnew);
             c = 0x10000 + ((c - 0xd800) << 10) + (second - 0xdc00), i += 2;
         }
         if (c == '\n') ++line;
         addUtf8(text, c);
     }
-    if (bytes.size() % 2 != 0) fail(where, line, "the text ends in the middle of a character", "save it again");
+    if (bytes.size() % 2 != 0) refuse(where, line, "the text ends in the middle of a character", "save it again");
     return text;
 }
 
@@ -73,7 +73,7 @@ void requireUtf8(std::string_view text, const std::string& where) {
     for (std::size_t i = 0; i < text.size();) {
         const std::size_t length = lengthAt(text, i);
         if (length == 0)
-            fail(where, line, fmt::format("byte {:02x} is no UTF-8", static_cast<unsigned char>(text[i])), kSaveAnew);
+            refuse(where, line, fmt::format("byte {:02x} is no UTF-8", static_cast<unsigned char>(text[i])), kSaveAnew);
         if (text[i] == '\n') ++line;
         i += length;
     }
@@ -91,13 +91,6 @@ char separatorOf(std::string_view text) {
         if (const std::size_t which = kKnown.find(c); which != kKnown.npos) ++count[which];
     }
     return kKnown[static_cast<std::size_t>(std::max_element(std::begin(count), std::end(count)) - std::begin(count))];
-}
-
-std::string small(std::string_view text) {
-    std::string out(text);
-    for (char& c : out)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return out;
 }
 
 class Reader {
@@ -120,8 +113,8 @@ class Reader {
         for (;;) {
             row.cells.push_back(cell());
             if (row.cells.size() > kMostColumns)
-                fail(where_, row.line, fmt::format("there are more than {} columns", kMostColumns),
-                     "leave out those that are not needed");
+                refuse(where_, row.line, fmt::format("there are more than {} columns", kMostColumns),
+                       "leave out those that are not needed");
             if (at_ < text_.size() && text_[at_] == separator_) {
                 ++at_;
                 continue;
@@ -153,17 +146,18 @@ class Reader {
         }
         trim(out);
         if (out.size() > kMostCellBytes)
-            fail(where_, line_, fmt::format("a cell is longer than {} bytes", kMostCellBytes), "shorten it");
+            refuse(where_, line_, fmt::format("a cell is longer than {} bytes", kMostCellBytes), "shorten it");
         for (const char c : out)
             if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-                fail(where_, line_, "a cell has a line's end or another control character in it", "take it out");
+                refuse(where_, line_, "a cell has a line's end or another control character in it", "take it out");
         return out;
     }
     std::string quoted() {
         const std::size_t from = line_;
         std::string out;
         for (++at_;; ++at_) {
-            if (at_ >= text_.size()) fail(where_, from, "a quote is opened and never closed", "close it, or double it");
+            if (at_ >= text_.size())
+                refuse(where_, from, "a quote is opened and never closed", "close it, or double it");
             if (text_[at_] == '"') {
                 if (at_ + 1 >= text_.size() || text_[at_ + 1] != '"') break;
                 ++at_;
@@ -175,8 +169,8 @@ class Reader {
         while (isBlank())
             ++at_;
         if (!isLineEnd() && text_[at_] != separator_)
-            fail(where_, line_, "there is something behind a closed quote",
-                 "double a quote that belongs to the text, as \"\"");
+            refuse(where_, line_, "there is something behind a closed quote",
+                   "double a quote that belongs to the text, as \"\"");
         return out;
     }
     /// Also the blank that Japanese has, and the one that does not break.
@@ -199,11 +193,18 @@ class Reader {
 
 }  // namespace
 
+std::string inSmallLetters(std::string_view text) {
+    std::string out(text);
+    for (char& c : out)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return out;
+}
+
 Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
     if (bytes.size() > kMostSpreadsheetBytes)
-        fail(where, 1, fmt::format("it has more than {} MB", kMostSpreadsheetBytes >> 20), "import it in parts");
+        refuse(where, 1, fmt::format("it has more than {} MB", kMostSpreadsheetBytes >> 20), "import it in parts");
     if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xd0\xcf\x11\xe0"))
-        fail(where, 1, "this is a spreadsheet program's own file", kSaveAnew);
+        refuse(where, 1, "this is a spreadsheet program's own file", kSaveAnew);
     std::string decoded;
     if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
         decoded = fromUtf16(bytes.substr(2), bytes.starts_with("\xfe\xff"), where);
@@ -215,7 +216,7 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
     std::size_t line = 1;
     char separator = separatorOf(bytes);
     // Excel's own first line, which it never shows.
-    if (small(bytes.substr(0, 4)) == "sep=" && bytes.size() > 5 && (bytes[5] == '\r' || bytes[5] == '\n')) {
+    if (inSmallLetters(bytes.substr(0, 4)) == "sep=" && bytes.size() > 5 && (bytes[5] == '\r' || bytes[5] == '\n')) {
         separator = bytes[4];
         bytes.remove_prefix(bytes.substr(5).starts_with("\r\n") ? 7 : 6);
         ++line;
@@ -223,25 +224,22 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
     Spreadsheet table;
     table.where_ = std::move(where);
     std::vector<Row> rows = Reader(bytes, separator, line, table.where_).rows();
-    if (rows.empty())
-        ::handpiece::school::fail(table.where_, line, "there is nothing in it", "begin with a line of columns' names");
+    if (rows.empty()) refuse(table.where_, line, "there is nothing in it", "begin with a line of columns' names");
     Row head = std::move(rows.front());
     rows.erase(rows.begin());
     for (const std::string& name : head.cells) {
         const bool isTwice = !name.empty() && table.columnOf(name) < table.names_.size();
-        if (isTwice)
-            ::handpiece::school::fail(table.where_, head.line, fmt::format("there are two columns \"{}\"", name),
-                                      "keep one");
+        if (isTwice) refuse(table.where_, head.line, fmt::format("there are two columns \"{}\"", name), "keep one");
         table.names_.push_back(name);
-        table.small_.push_back(small(name));
+        table.small_.push_back(inSmallLetters(name));
     }
     for (Row& row : rows) {
         for (std::size_t i = table.names_.size(); i < row.cells.size(); ++i)
             if (!row.cells[i].empty())
-                ::handpiece::school::fail(table.where_, row.line,
-                                          fmt::format("\"{}\" stands in column {}, and {} columns have a name",
-                                                      row.cells[i].substr(0, 60), i + 1, table.names_.size()),
-                                          "put a cell that has a separator in it in quotes");
+                refuse(table.where_, row.line,
+                       fmt::format("\"{}\" stands in column {}, and {} columns have a name", row.cells[i].substr(0, 60),
+                                   i + 1, table.names_.size()),
+                       "put a cell that has a separator in it in quotes");
         row.cells.resize(table.names_.size());
     }
     table.rows_ = std::move(rows);
@@ -249,7 +247,7 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
 }
 
 std::size_t Spreadsheet::columnOf(std::string_view name) const {
-    const std::string wanted = small(name);
+    const std::string wanted = inSmallLetters(name);
     std::size_t i = 0;
     while (i < small_.size() && small_[i] != wanted)
         ++i;

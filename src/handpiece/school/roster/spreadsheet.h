@@ -13,6 +13,9 @@ namespace handpiece::school {
 
 inline constexpr std::size_t kMostSpreadsheetBytes = 64 << 20, kMostCellBytes = 2000;
 
+/// A to Z as a to z.
+[[nodiscard]] std::string inSmallLetters(std::string_view text);
+
 /// Rows under a line of names. All texts are UTF-8 without control characters, without blanks around them.
 class Spreadsheet {
   public:

@@ -109,6 +109,9 @@ struct Server::State : Service {
     void add(const Entry& entry) {
         const auto handler = [this, entry](const Request& request, Response& response) {
             ++asked;
+            // Each person in the language that their browser asks for; the server's own where that is none of ours.
+            const std::string language = config::languageAsked(request.get_header_value("Accept-Language"));
+            const config::LanguageHere here(language.empty() ? config::words().language() : language);
             if (const auto* anyones = std::get_if<Handler>(&entry.answer)) return (*anyones)(request, response);
             if (const auto* stations = std::get_if<StationHandler>(&entry.answer))
                 return (*stations)(request, response, stationOf(request));

@@ -11,6 +11,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <thread>
 
 #include "handpiece/base/core/error.h"
 
@@ -105,6 +106,29 @@ TEST(Words, FillIn) {
     EXPECT_EQ(Words::in("ja")(verbatim("{} as it is")), "{} as it is");
     EXPECT_THROW((void)Words::in("xx"), core::Error);
     EXPECT_THROW((void)Words::in("en").text("no.such"), core::Error);
+}
+
+TEST(Words, ABrowserAsksByWeights) {
+    EXPECT_EQ(languageAsked("ja"), "ja");
+    EXPECT_EQ(languageAsked("de-DE,de;q=0.9,ja;q=0.5,en;q=0.7"), "en");
+    EXPECT_EQ(languageAsked("ja-JP, en;q=0.8"), "ja");
+    EXPECT_EQ(languageAsked("ja;q=0,en;q=0.1"), "en");
+    for (const char* none : {"", "de", "*", ",,;q=", "ja;q=x", "ja;q=nan"})
+        EXPECT_EQ(languageAsked(none), "") << none;
+}
+
+TEST(Words, AThreadHasALanguageOfItsOwn) {
+    const std::string before = words().language();
+    {
+        const LanguageHere here("ja");
+        EXPECT_EQ(words().language(), "ja");
+        std::string other;
+        std::thread([&] { other = words().language(); }).join();
+        EXPECT_EQ(other, before);
+        const LanguageHere inner("en");
+        EXPECT_EQ(words().language(), "en");
+    }
+    EXPECT_EQ(words().language(), before);
 }
 
 TEST(Words, TheEnvironmentChooses) {

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <httplib.h>
 
 #include <span>
 #include <thread>
@@ -15,6 +14,7 @@
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/file.h"
+#include "school/http.h"
 #include "school/server.h"
 #include "school/station.h"
 
@@ -54,22 +54,26 @@ inline tasks::Task blockTask() {
     return task;
 }
 
-/// One sitting at the block, recorded once for all tests.
+/// A sitting at the block of so long [s], recorded.
+inline void recordSession(const fs::path& path, double lastsS) {
+    simulation::SimulationSettings settings = simulation::blockSettings();
+    const instrument::Instrument known = instrument::makeInstrument("round:1.0x0.9");
+    settings.bur = known.bur, settings.cuttingParameters = known.cuttingParameters;
+    const simulation::SimulationSetup station = simulation::makeSimulation(blockTask().toothCase, settings, false);
+    simulation::LiveSessionSettings live;
+    live.sessionFile = path;
+    const auto lead = std::make_shared<simulation::Lead>();
+    simulation::LiveSession sitting(station, blockTask().toothCase, simulation::handOf(simulation::twoHoles(), lead),
+                                    live, nullptr);
+    EXPECT_TRUE(simulation::leadTo(sitting, *lead, lastsS));
+    sitting.stop();
+}
+/// One, recorded once for all tests.
 inline const fs::path& session() {
     static const test::TemporaryFolder folder;
     static const fs::path file = [] {
         const fs::path path = folder.path() / "one.h5";
-        simulation::SimulationSettings settings = simulation::blockSettings();
-        const instrument::Instrument known = instrument::makeInstrument("round:1.0x0.9");
-        settings.bur = known.bur, settings.cuttingParameters = known.cuttingParameters;
-        const simulation::SimulationSetup station = simulation::makeSimulation(blockTask().toothCase, settings, false);
-        simulation::LiveSessionSettings live;
-        live.sessionFile = path;
-        const auto lead = std::make_shared<simulation::Lead>();
-        simulation::LiveSession sitting(station, blockTask().toothCase,
-                                        simulation::handOf(simulation::twoHoles(), lead), live, nullptr);
-        EXPECT_TRUE(simulation::leadTo(sitting, *lead, 3.1));
-        sitting.stop();
+        recordSession(path, 3.1);
         return path;
     }();
     return file;

@@ -310,7 +310,8 @@ std::string HtmlReport::text() const {
         (hasViewer_ ? fmt::format("; script-src 'sha256-{}'", scriptHash()) : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n"
         "<style>{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),

@@ -3,8 +3,10 @@
 
 #include <fmt/args.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <charconv>
 #include <cstdlib>
 
 #include "handpiece/base/config/table.h"
@@ -29,6 +31,7 @@ void gather(const Table& table, const std::string& prefix, std::map<std::string,
 }
 
 std::atomic<const Words*> current{nullptr};
+thread_local const Words* here = nullptr;
 
 }  // namespace
 
@@ -63,12 +66,42 @@ std::string Words::operator()(const Phrase& phrase) const {
 }
 
 const Words& words() {
+    if (here != nullptr) return *here;
     const Words* set = current.load(std::memory_order_acquire);
     return set != nullptr ? *set : Words::in("en");
 }
 
 void useLanguage(std::string_view language) {
     current.store(&Words::in(language), std::memory_order_release);
+}
+
+LanguageHere::LanguageHere(std::string_view language) : before_(here) {
+    here = &Words::in(language);
+}
+LanguageHere::~LanguageHere() {
+    here = before_;
+}
+
+std::string languageAsked(std::string_view accept) {
+    const std::vector<std::string> ours = Words::languages();
+    std::string best;
+    double bestWeight = 0.0;
+    while (!accept.empty()) {
+        const std::size_t end = std::min(accept.find(','), accept.size());
+        std::string_view one = accept.substr(0, end);
+        accept.remove_prefix(std::min(end + 1, accept.size()));
+        while (one.starts_with(' '))
+            one.remove_prefix(1);
+        double weight = 1.0;
+        if (const std::size_t q = one.find(";q="); q != one.npos) {
+            weight = 0.0;
+            std::from_chars(one.data() + q + 3, one.data() + one.size(), weight);
+        }
+        const std::string language(one.substr(0, one.find_first_of("-; ")));
+        if (weight > bestWeight && std::find(ours.begin(), ours.end(), language) != ours.end())
+            best = language, bestWeight = weight;
+    }
+    return best;
 }
 
 std::string languageOfEnvironment() {

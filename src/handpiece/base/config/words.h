@@ -58,6 +58,20 @@ class Words {
 /// The language of this program: English until useLanguage(), which belongs to its start.
 [[nodiscard]] const Words& words();
 void useLanguage(std::string_view language);
+/// Another language in this thread, as long as it lives: a server answers each in theirs.
+class LanguageHere {
+  public:
+    /// As Words::in().
+    explicit LanguageHere(std::string_view language);
+    ~LanguageHere();
+    LanguageHere(const LanguageHere&) = delete;
+    LanguageHere& operator=(const LanguageHere&) = delete;
+
+  private:
+    const Words* before_;
+};
+/// The first of ours that a browser asks for (HTTP's Accept-Language, by its weights); empty: none of them.
+[[nodiscard]] std::string languageAsked(std::string_view acceptLanguage);
 /// The language that the person's environment asks for (LC_ALL, LC_MESSAGES, LANG), English where it has none of ours.
 [[nodiscard]] std::string languageOfEnvironment();
 

@@ -31,5 +31,6 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> generalRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> stationRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
 
 }  // namespace handpiece::school_server

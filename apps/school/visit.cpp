@@ -27,6 +27,12 @@ std::optional<Role> roleIn(const Books& books, const std::string& schoolClass, c
 report::Looker lookerOf(const Visit& v) {
     // A way for each room of pages, to those who may see it.
     std::vector<report::HtmlReport::Way> ways;
+    const auto office = [](const char* id) { return config::words()(std::string("school-office.") + id); };
+    if (may(v, Action::managePeople, {})) ways.push_back({"/office/people", office("people")});
+    if (may(v, Action::manageClasses, {})) ways.push_back({"/office/classes", office("classes")});
+    if (may(v, Action::manageStations, {})) ways.push_back({"/office/stations", office("stations")});
+    if (may(v, Action::seeAudit, {})) ways.push_back({"/office/audit", office("audit")});
+    ways.push_back({"/account", office("account")});
     return {v.person.code, v.person.name, school::requestTokenOf(v.token), std::move(ways)};
 }
 

@@ -12,6 +12,8 @@ void addServeCommand(cli::Command& app);
 void addBooksCommands(cli::Command& app);
 /// On the server's machine: people import, export, erase.
 void addPeopleCommands(cli::Command& app);
+/// On the server's machine: backup, restore.
+void addBackupCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
 

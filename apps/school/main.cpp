@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
              handpiece::school_cli::addServeCommand(top);
              handpiece::school_cli::addBooksCommands(top);
              handpiece::school_cli::addPeopleCommands(top);
+             handpiece::school_cli::addBackupCommands(top);
              handpiece::school_cli::addStationCommands(top);
          }});
 }

@@ -53,7 +53,7 @@ constexpr const char* kAbout =
     "                 which attempt stands in tables/attempt_files.csv\n\n"
     "Passwords and codes are kept as hashes only and are not in here.\n";
 
-std::vector<std::byte> bytesOf(std::string_view text) {
+std::vector<std::byte> asBytesOf(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
 }
@@ -62,9 +62,9 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 
 void exportPerson(Books& books, const std::string& code, const std::filesystem::path& file, const Act& act) {
     cases::PackageFiles small;
-    small["READ-ME.txt"] = bytesOf(fmt::format(kAbout, code));
+    small["READ-ME.txt"] = asBytesOf(fmt::format(kAbout, code));
     for (const BookTable& table : books.about(code, act))
-        small["tables/" + table.name + ".csv"] = bytesOf(csvOf(table));
+        small["tables/" + table.name + ".csv"] = asBytesOf(csvOf(table));
     std::map<std::string, std::filesystem::path> sessions;
     for (const std::string& hash : BooksAccounts(books).filesOf(code))
         sessions["sessions/" + hash + ".h5"] = books.files().path(hash);

@@ -19,8 +19,10 @@ namespace {
 
 constexpr Milliseconds kDay = 86'400'000;
 
-std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::string& address,
-                                 std::chrono::milliseconds patience) {
+}  // namespace
+
+std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, const std::string& address,
+                                            std::chrono::milliseconds patience) {
     if (!address.empty()) return std::make_unique<PostgresDatabase>(address, patience);
     const std::filesystem::path file = data / "books.db";
     const bool isNew = !core::isThere(file);
@@ -35,6 +37,8 @@ std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::s
         "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
     return database;
 }
+
+namespace {
 
 /// Safe in an address, a table and a file's name.
 void requireCode(const char* field, const std::string& code) {
@@ -134,7 +138,7 @@ void Books::State::requireClass(const std::string& id) {
 
 Books::Books(const std::filesystem::path& data, const std::string& address, std::chrono::milliseconds patience) {
     core::prepareOutputFolder(data, true);
-    state_.reset(new State{opened(data, address, patience), ContentFiles(data)});
+    state_.reset(new State{openBooksDatabase(data, address, patience), ContentFiles(data)});
     bringUpBooks(*state_->database);
 }
 

@@ -104,6 +104,10 @@ std::vector<AuditLine> BooksAccounts::auditBefore(std::int64_t number, std::size
     return all;
 }
 
+std::string BooksAccounts::incarnation() const {
+    return state_.database->text("SELECT id FROM incarnation");
+}
+
 std::vector<std::string> BooksAccounts::filesOf(const std::string& person) const {
     std::vector<std::string> all;
     Statement rows = state_.ask(

@@ -34,6 +34,8 @@ class BooksAccounts : BooksRoom {
     /// Before `number`, the newest first; `number` 0: from the newest on; empty `about`: all.
     [[nodiscard]] std::vector<AuditLine> auditBefore(std::int64_t number, std::size_t most,
                                                      const std::string& about = {}) const;
+    /// Of these books from their beginning, or from when they were restored: then stations send again what they sent.
+    [[nodiscard]] std::string incarnation() const;
     /// Hashes of the files of a person's sessions that are there.
     [[nodiscard]] std::vector<std::string> filesOf(const std::string& person) const;
 };

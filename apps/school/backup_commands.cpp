@@ -7,6 +7,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/keeping/backup.h"
 #include "school/commands.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "studies/progress_bar.h"
 
@@ -14,7 +15,7 @@ namespace handpiece::school_cli {
 namespace {
 
 struct BackupOptions {
-    std::string data = "school", database, file;
+    std::string data, database, file;
     bool onlyCheck = false;
 };
 
@@ -29,7 +30,7 @@ void addBackupCommands(cli::Command& app) {
     const auto options = std::make_shared<BackupOptions>();
     BackupOptions& o = *options;
     const auto books = [&o](cli::Command& command) {
-        command.option("--data", o.data, "the server's folder").showDefault();
+        command.option("--data", o.data, "the server's folder (school)");
         command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
     };
     cli::Command backup = app.subcommand("backup", "The school in one file, while its server goes on");
@@ -38,7 +39,8 @@ void addBackupCommands(cli::Command& app) {
     backup.callback([options] {
         const BackupOptions& of = *options;
         studies::ProgressBar bar("packing");
-        const school::Backup made = school::backUp(of.data, of.database, of.file, school_server::systemClock()(),
+        const SchoolSettings place = placeOfBooks(of.data, of.database);
+        const school::Backup made = school::backUp(place.data, place.database, of.file, school_server::systemClock()(),
                                                    HANDPIECE_VERSION, bar.listener());
         bar.finish();
         tell(made, of.file.c_str());
@@ -50,8 +52,11 @@ void addBackupCommands(cli::Command& app) {
     restore.callback([options] {
         const BackupOptions& of = *options;
         studies::ProgressBar bar(of.onlyCheck ? "checking" : "restoring");
-        const school::Backup read = of.onlyCheck ? school::checkBackup(of.file, bar.listener())
-                                                 : school::restore(of.file, of.data, of.database, bar.listener());
+        const auto restored = [&] {
+            const SchoolSettings place = placeOfBooks(of.data, of.database);
+            return school::restore(of.file, place.data, place.database, bar.listener());
+        };
+        const school::Backup read = of.onlyCheck ? school::checkBackup(of.file, bar.listener()) : restored();
         bar.finish();
         tell(read, of.onlyCheck ? "whole" : "restored");
     });

@@ -14,6 +14,7 @@
 #include "handpiece/school/store/books_accounts.h"
 #include "school/commands.h"
 #include "school/roster_words.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 
 namespace handpiece::school_cli {
@@ -23,7 +24,7 @@ using school::Act;
 using school::Books;
 
 struct PeopleOptions {
-    std::string data = "school", database, file, code, out, codes;
+    std::string data, database, file, code, out, codes;
     bool isDryRun = false, isWhole = false, administrators = false, endsMany = false, yes = false;
     std::size_t days = 14;
 };
@@ -62,7 +63,8 @@ void importPeople(const PeopleOptions& o) {
     const Act act = actOfServer();
     school::Roster roster = school::readRoster(o.file, school_server::today(act.at));
     if (!roster.isExternal) roster.hasAllEnrolments = o.isWhole;
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const school::RosterRules rules{o.isDryRun, o.administrators, o.endsMany, school_server::newPersonCode};
     const auto changes = school::BooksRoster(books).import(roster, rules, act);
     for (const school::RosterChange& change : changes)
@@ -74,13 +76,15 @@ void importPeople(const PeopleOptions& o) {
 }
 
 void exportOne(const PeopleOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     school::exportPerson(books, o.code, o.out, actOfServer());
     fmt::print("{}\n", o.out);
 }
 
 void eraseOne(const PeopleOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const auto person = books.person(o.code);
     if (!person) throw core::Error("there is no such person", o.code, "see the list in the browser: /office/people");
     if (!o.yes)
@@ -98,7 +102,7 @@ void addPeopleCommands(cli::Command& app) {
     cli::Command people = app.subcommand("people", "Lists of people; what is held of one (on the server's machine)");
     people.requireSubcommand();
     const auto books = [&o](cli::Command& command) {
-        command.option("--data", o.data, "the server's folder").showDefault();
+        command.option("--data", o.data, "the server's folder (school)");
         command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
     };
     cli::Command import = people.subcommand("import", "People, classes and who is in which, from a list");

@@ -4,6 +4,7 @@
 /// A school's server: what stations push goes into its books, is cut again, and scored. The one place that speaks HTTP.
 /// docs/school.md.
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -18,10 +19,11 @@ struct Settings {
     std::filesystem::path data;  ///< its folder
     std::string database{};      ///< empty: SQLite in it; else postgresql://...
     std::string host = "127.0.0.1";
-    int port = 8620;                   ///< 0: any that is free
-    std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
-    std::size_t threads = 64;          ///< each serves one connection
-    std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
+    int port = 8620;                         ///< 0: any that is free
+    std::string certificate{}, key{};        ///< files (PEM) for TLS of its own; both or neither
+    std::size_t threads = 400;               ///< at most; each serves one connection
+    std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off
+    std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
 };
 /// Since 1970, UTC.
 using Clock = std::function<school::Milliseconds()>;

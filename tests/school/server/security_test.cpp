@@ -212,6 +212,42 @@ TEST_F(SecurityTest, TooLongIsRefusedAndTheNextIsServed) {
     EXPECT_EQ(http.Get("/healthz")->status, 200);
 }
 
+TEST_F(SecurityTest, WhoSendsAByteASecondStopsNobodyAndIsCutOff) {
+    constexpr int kSlow = 300;
+    School school(data(), 0, 0, std::chrono::seconds(2));
+    std::vector<int> lines;
+    const std::string start = "GET /login HTTP/1.1\r\nHost: x\r\nX-Slow: ";
+    for (int i = 0; i < kSlow; ++i) {
+        const int line = socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in to{};
+        to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(school.port())),
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        ASSERT_EQ(connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+        ASSERT_EQ(send(line, start.data(), start.size(), MSG_NOSIGNAL), static_cast<ssize_t>(start.size()));
+        lines.push_back(line);
+    }
+    // Others are served in the meantime, each over a new connection, and a file that is large too.
+    int alive = kSlow;
+    for (int second = 0; second < 60 && alive > 0; ++second) {
+        httplib::Client http(school.address());
+        http.set_read_timeout(10);
+        const auto well = http.Get("/healthz");
+        ASSERT_TRUE(well) << "in second " << second << " with " << alive << " slow ones";
+        EXPECT_EQ(well->status, 200);
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        alive = 0;
+        for (const int line : lines) {
+            char byte = 0;
+            const bool isOpen =
+                send(line, "x", 1, MSG_NOSIGNAL) == 1 && (recv(line, &byte, 1, MSG_DONTWAIT) > 0 || errno == EAGAIN);
+            alive += isOpen ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(alive, 0);
+    for (const int line : lines)
+        close(line);
+}
+
 TEST_F(SecurityTest, AGivenLogInIsNotTakenOver) {
     School school(data());
     // A token that somebody put into the browser before is never the one after the log-in.

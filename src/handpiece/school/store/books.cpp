@@ -35,6 +35,7 @@ std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, c
     // Pages are read while stations push; what is deleted is overwritten.
     database->run(
         "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
+    database->keepLogShort();
     return database;
 }
 

@@ -11,6 +11,7 @@
 #include <memory>
 #include <string_view>
 
+#include "handpiece/app/report/report_html.h"
 #include "school/wire.h"
 
 namespace handpiece::school_server {
@@ -23,10 +24,10 @@ constexpr const char *kJson = "application/json", *kCookie = "handpiece", *kPoli
 
 int statusOf(const core::Error& error) {
     static const std::map<std::string, int, std::less<>> statuses{
-        {"message-damaged", 400},   {"books-invalid", 400},   {"not-enrolled", 401},  {"code-unknown", 403},
-        {"books-unknown", 404},     {"books-duplicate", 409}, {"books-changed", 409}, {"upload-offset", 409},
-        {"account-suspended", 403}, {"upload-mismatch", 422}, {"no-space", 507},      {"store-locked", 503},
-        {"store-gone", 503},        {"store-refused", 503},   {"protocol-other", 426}};
+        {"message-damaged", 400}, {"books-invalid", 400},     {"not-enrolled", 401},    {"code-unknown", 403},
+        {"live-private", 403},    {"account-suspended", 403}, {"books-unknown", 404},   {"books-duplicate", 409},
+        {"books-changed", 409},   {"upload-offset", 409},     {"upload-mismatch", 422}, {"no-space", 507},
+        {"store-locked", 503},    {"store-gone", 503},        {"store-refused", 503},   {"protocol-other", 426}};
     const auto found = statuses.find(error.id());
     return found != statuses.end() ? found->second : 500;
 }
@@ -68,7 +69,8 @@ void answer(Response& response, Page&& page, bool secure) {
                                              "'self'; base-uri 'none'; frame-ancestors 'none'",
                                              page.runsScript ? "'self' data: blob:; script-src 'self'; connect-src "
                                                                "'self'"
-                                                             : "'self' data:"));
+                                             : page.isReview ? "data:; script-src " + report::viewerInPolicy()
+                                                             : std::string("'self' data:")));
     if (!page.fileName.empty())
         response.set_header("Content-Disposition", fmt::format("attachment; filename=\"{}\"", page.fileName));
     if (page.login)

@@ -11,5 +11,6 @@ int main(int argc, char** argv) {
              handpiece::school_cli::addPeopleCommands(top);
              handpiece::school_cli::addBackupCommands(top);
              handpiece::school_cli::addStationCommands(top);
+             handpiece::school_cli::addLiveCommands(top);
          }});
 }

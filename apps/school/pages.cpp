@@ -5,8 +5,11 @@
 
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/report/assessment_report.h"
+#include "handpiece/app/report/review_page.h"
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
+#include "handpiece/base/core/file.h"
+#include "school/review_shelf.h"
 #include "school/visit.h"
 
 namespace handpiece::school_server {
@@ -83,6 +86,30 @@ Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {
     if (!text || !task) return refused(words()("school.not-there"), 404);
     if (!relation.isOwn) noteLook(v, "result seen", attempt->person, id);
     return {200, report::studentReport(result, *task, rubric::parseRubric(text->text, "rubric " + text->id))};
+}
+
+Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
+    const auto attempt = v.books.attempt(id);
+    const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
+    if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    const bool isWhole = !attempt->files.empty() &&
+                         std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
+                             return core::isThere(v.books.files().path(file));
+                         });
+    if (!isWhole) return refused(words()("school-live.no-session"), 404);
+    ReviewShelf::Answer answer = shelf.ask(*attempt, v.books.scoresOf(id));
+    if (answer.page.empty()) {
+        Page page{answer.trouble.empty() ? 200 : 500,
+                  report::reviewWaitPage(lookerOf(v), id, answer.progress, answer.isBusy, answer.trouble),
+                  {},
+                  {}};
+        page.runsScript = true;
+        return page;
+    }
+    if (!relation.isOwn) noteLook(v, "review seen", attempt->person, id);
+    Page page{200, std::move(answer.page), {}, {}};
+    page.isReview = true;
+    return page;
 }
 
 }  // namespace handpiece::school_server

@@ -15,6 +15,8 @@
 
 namespace handpiece::school_server {
 
+class ReviewShelf;
+
 /// What goes back to the browser.
 struct Page {
     int status = 200;
@@ -25,6 +27,7 @@ struct Page {
     std::string fileName{};     ///< to be kept as a file of this name
     core::FileStream stream{};  ///< instead of `body`: may be large
     bool runsScript = false;    ///< modules of this server, which may ask it; else none runs
+    bool isReview = false;      ///< the viewer that stands in it runs, and asks nobody
 };
 
 /// Reads an exercise of the books by its hash; null where there is none.
@@ -43,6 +46,8 @@ struct Visit {
 [[nodiscard]] Page personOf(const Visit& visit, const std::string& code);
 [[nodiscard]] Page attemptOf(const Visit& visit, const std::string& id);
 [[nodiscard]] Page resultOf(const Visit& visit, const std::string& id, const TaskOf& taskOf);
+/// The review, or how far the making of it is.
+[[nodiscard]] Page reviewOf(const Visit& visit, const std::string& id, ReviewShelf& shelf);
 [[nodiscard]] Page refused(const std::string& what, int status);
 
 }  // namespace handpiece::school_server

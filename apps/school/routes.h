@@ -32,5 +32,6 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> stationRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
 
 }  // namespace handpiece::school_server

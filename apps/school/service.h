@@ -9,13 +9,16 @@
 
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
+#include "school/live_board.h"
+#include "school/review_shelf.h"
 #include "school/server.h"
 #include "school/task_shelf.h"
 
 namespace handpiece::school_server {
 
 struct Service {
-    Service(const Settings& s, Clock c) : settings(s), clock(std::move(c)), books({s.data, s.database}) {}
+    Service(const Settings& s, Clock c)
+        : settings(s), clock(std::move(c)), books({s.data, s.database}), reviews(s.data / "reviews", books, tasks) {}
 
     [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
 
@@ -23,6 +26,8 @@ struct Service {
     const Clock clock;
     BooksPool books;
     TaskShelf tasks;
+    LiveBoard live;
+    ReviewShelf reviews;
     std::mutex guessing;
     school::Throttle throttle;  ///< guarded by `guessing`
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};

@@ -2,7 +2,6 @@
 #include "school/station.h"
 
 #include <fmt/format.h>
-#include <httplib.h>
 
 #include <algorithm>
 #include <fstream>
@@ -12,56 +11,13 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/content_files.h"
+#include "school/line.h"
 
 namespace handpiece::school_station {
 namespace {
 
 namespace fs = std::filesystem;
 using school_wire::Received;
-
-constexpr auto kPatience = std::chrono::seconds(20);
-
-core::Error silent(const std::string& server, const std::string& why) {
-    return core::Error(fmt::format("nobody answers there ({})", why), server,
-                       "try again when the network is there: nothing is lost until then")
-        .as("server-silent", {server, why});
-}
-
-class Line {
-  public:
-    Line(const std::string& server, std::string key) : server_(server), http_(checked(server)) {
-        http_.set_connection_timeout(kPatience);
-        http_.set_read_timeout(kPatience);
-        http_.set_write_timeout(kPatience);
-        http_.set_keep_alive(true);
-        httplib::Headers headers{{"Handpiece-Protocol", std::to_string(school_wire::kProtocol)}};
-        if (!key.empty()) headers.emplace("Authorization", "Bearer " + key);
-        http_.set_default_headers(headers);
-    }
-    std::string get(const std::string& path) { return heard(http_.Get(path)); }
-    std::string post(const std::string& path, const std::string& json) {
-        return heard(http_.Post(path, json, "application/json"));
-    }
-    std::string put(const std::string& path, const std::string& bytes) {
-        return heard(http_.Put(path, bytes, "application/octet-stream"));
-    }
-
-  private:
-    static const std::string& checked(const std::string& server) {
-        if (!server.starts_with("http://") && !server.starts_with("https://"))
-            throw core::Error("this is no address of a server", server, "give one as https://school.example:8620")
-                .as("server-address", {server});
-        return server;
-    }
-    std::string heard(const httplib::Result& result) const {
-        if (!result) throw silent(server_, httplib::to_string(result.error()));
-        if (result->status < 200 || result->status > 299) throw school_wire::errorFrom(result->body, result->status);
-        return result->body;
-    }
-
-    std::string server_;
-    httplib::Client http_;
-};
 
 /// What will be refused tomorrow as well.
 bool isFinal(const core::Error& error) {
@@ -219,6 +175,10 @@ std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment) {
     for (auto some = store.outbox(from); !some.empty(); some = store.outbox(from))
         waiting += some.size(), from = some.back().sequence;
     return waiting;
+}
+
+std::vector<school_wire::Task> tasksOf(const Enrolment& enrolment) {
+    return school_wire::tasksFrom(Line(enrolment.server, enrolment.key).get("/api/v1/tasks/" + enrolment.person));
 }
 
 school_wire::Status status(const Enrolment& enrolment) {

@@ -44,6 +44,8 @@ Pushed push(school::Store& store, const std::filesystem::path& sessions, Enrolme
 
 /// How much of the outbox the server has not heard of yet.
 [[nodiscard]] std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment);
+/// What its person has to do.
+[[nodiscard]] std::vector<school_wire::Task> tasksOf(const Enrolment& enrolment);
 [[nodiscard]] school_wire::Status status(const Enrolment& enrolment);
 
 }  // namespace handpiece::school_station

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -197,6 +198,68 @@ std::vector<Task> tasksFrom(std::string_view json) {
         tasks.push_back({m.text("assignment"), m.text("exercise_hash"), m.text("title"),
                          m.whole<school::Milliseconds>("opens_ms"), m.whole<school::Milliseconds>("closes_ms")});
     return tasks;
+}
+
+std::string framed(std::string_view json, std::string_view rest) {
+    std::string bytes;
+    bytes.reserve(4 + json.size() + rest.size());
+    for (int shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>(json.size() >> shift & 0xFF);
+    bytes.append(json).append(rest);
+    return bytes;
+}
+std::pair<std::string_view, std::string_view> unframed(std::string_view bytes) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4 && i < bytes.size(); ++i)
+        length |= static_cast<std::size_t>(static_cast<unsigned char>(bytes[i])) << 8 * i;
+    if (bytes.size() < 4 || length > bytes.size() - 4)
+        throw core::Error("it is shorter than it says", "message", "use programs that belong together")
+            .as("message-damaged", {"message", "is shorter than it says"});
+    return {bytes.substr(4, length), bytes.substr(4 + length)};
+}
+
+std::string toBytes(const Live& live) {
+    return framed(dumped({{"person", live.person},
+                          {"assignment", live.assignment},
+                          {"exercise_hash", live.exerciseHash},
+                          {"title", live.title},
+                          {"shared", live.isShared},
+                          {"elapsed_s", live.elapsedS},
+                          {"removed_mm3", live.removedMm3},
+                          {"flags", live.flags},
+                          {"age_ms", live.ageMs}}),
+                  live.picture);
+}
+Live liveFrom(std::string_view bytes) {
+    const auto [json, picture] = unframed(bytes);
+    constexpr std::size_t kMostWord = 200;
+    const Message m(json);
+    Live live;
+    live.person = m.text("person", kMostWord), live.assignment = m.text("assignment", kMostWord);
+    live.exerciseHash = m.text("exercise_hash", kMostWord), live.title = m.text("title", kMostWord);
+    live.isShared = m.flag("shared");
+    live.elapsedS = m.number("elapsed_s"), live.removedMm3 = m.number("removed_mm3");
+    const std::vector<std::string> flags = m.texts("flags");
+    for (const std::string_view known : kLiveFlags)
+        if (std::find(flags.begin(), flags.end(), known) != flags.end()) live.flags.emplace_back(known);
+    live.ageMs = m.whole<std::int64_t>("age_ms");
+    live.picture = picture;
+    return live;
+}
+
+std::string toJson(const Watched& watched) {
+    Json by = Json::array();
+    for (const Watcher& one : watched.by)
+        by.push_back({{"name", one.name}, {"role", one.role}});
+    return dumped({{"by", std::move(by)}, {"closely", watched.closely}});
+}
+Watched watchedFrom(std::string_view json) {
+    const Message m(json);
+    Watched watched;
+    for (const Message& one : m.messages("by"))
+        watched.by.push_back({one.text("name"), one.text("role")});
+    watched.closely = m.flag("closely");
+    return watched;
 }
 
 std::string toJson(const core::Error& e) {

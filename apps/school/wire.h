@@ -3,8 +3,11 @@
 /// @file
 /// What stations and a school's server tell each other, as JSON. docs/school.md#between-station-and-server.
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
@@ -61,6 +64,41 @@ struct Task {
 };
 [[nodiscard]] std::string toJson(const std::vector<Task>& tasks);
 [[nodiscard]] std::vector<Task> tasksFrom(std::string_view json);
+
+/// What a station shows of the work that goes on at it.
+inline constexpr std::size_t kMostPicture = 300'000;
+struct Live {
+    std::string person;      ///< the school's code
+    std::string assignment;  ///< empty: practice of one's own
+    std::string exerciseHash, title;
+    bool isShared = false;  ///< practice that its student lets be watched
+    double elapsedS = 0.0, removedMm3 = 0.0;
+    std::vector<std::string> flags{};  ///< of kLiveFlags
+    std::int64_t ageMs = 0;            ///< of the picture, when it was sent: no two clocks agree
+    std::string picture{};             ///< the bytes of a JPEG file
+};
+/// What may have happened; others, of a newer station, are left out.
+inline constexpr std::array<std::string_view, 8> kLiveFlags{"pulp-exposed",    "neighbour-touched", "neighbour-cut",
+                                                            "gingiva-pressed", "gingiva-cut",       "head-touched",
+                                                            "stalled",         "time-over"};
+/// The length of the JSON (32 bits, low byte first), the JSON, the picture.
+[[nodiscard]] std::string toBytes(const Live& live);
+[[nodiscard]] Live liveFrom(std::string_view bytes);
+[[nodiscard]] std::string framed(std::string_view json, std::string_view rest);
+/// JSON, and the rest.
+[[nodiscard]] std::pair<std::string_view, std::string_view> unframed(std::string_view bytes);
+
+/// Who looks at a station, told to it.
+struct Watcher {
+    std::string name, role;
+    friend bool operator==(const Watcher&, const Watcher&) = default;
+};
+struct Watched {
+    std::vector<Watcher> by{};
+    bool closely = false;  ///< somebody looks at this station alone: a larger picture is worth while
+};
+[[nodiscard]] std::string toJson(const Watched& watched);
+[[nodiscard]] Watched watchedFrom(std::string_view json);
 
 /// An error as the other side tells it, and back: what, where, what to do, and its name.
 [[nodiscard]] std::string toJson(const core::Error& error);

@@ -18,6 +18,7 @@
 #include "desktop/features/radiograph/radiograph_feature.h"
 #include "desktop/features/replay/replay_feature.h"
 #include "desktop/features/scan/scan_feature.h"
+#include "desktop/features/school/school_feature.h"
 #include "desktop/features/sound/sound_feature.h"
 #include "desktop/features/view/layout_feature.h"
 #include "desktop/features/view/view_feature.h"
@@ -38,6 +39,7 @@ void installFeatures(const FeatureContext& context) {
     auto* exercise = new ExerciseFeature(context);
     add(exercise);
     add(new PracticeFeature(context, *exercise));
+    add(new SchoolFeature(context));  // after who keeps what was finished
     add(new LayoutFeature(context));
     add(new ReplayFeature(context));
     add(new MeasureFeature(context));

@@ -331,6 +331,10 @@ QImage ViewWidget::snapshot() {
     return image;
 }
 
+QImage ViewWidget::picture() const {
+    return state_->frame && state_->tooth ? state_->frame->image : QImage();
+}
+
 LatencyReport ViewWidget::latency() const {
     return state_->render->latency();
 }

@@ -136,6 +136,8 @@ class ViewWidget : public QWidget {
     void toggleHelpCard();
     /// What is seen, with all that is written on it.
     [[nodiscard]] QImage snapshot();
+    /// The tooth as it was drawn last, with nothing written on it; shared, not copied. Null: nothing is drawn.
+    [[nodiscard]] QImage picture() const;
     [[nodiscard]] LatencyReport latency() const;
     void resetLatency();
     /// As it is drawn: look() without what is not allowed.

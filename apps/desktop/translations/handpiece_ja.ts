@@ -4,6 +4,14 @@
 <context>
     <name>Commands</name>
     <message>
+        <source>Let practice be watched</source>
+        <translation>練習を公開する</translation>
+    </message>
+    <message>
+        <source>Your teachers may look on while you practise, until you end it or the program</source>
+        <translation>練習中の様子を教員が見られるようにします。オフにするかプログラムを終えるまで続きます</translation>
+    </message>
+    <message>
         <source>Work by mirror</source>
         <translation>ミラーテクニックで作業</translation>
     </message>
@@ -10613,6 +10621,52 @@ lingual: %4</source>
     <message>
         <source>Down</source>
         <translation>下へ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SchoolFeature</name>
+    <message>
+        <source>School</source>
+        <translation>学校</translation>
+    </message>
+    <message>
+        <source>watched by %1</source>
+        <translation>%1 が見ています</translation>
+    </message>
+    <message>
+        <source>can be watched</source>
+        <translation>見学できる状態</translation>
+    </message>
+    <message>
+        <source>connected</source>
+        <translation>接続済み</translation>
+    </message>
+    <message>
+        <source>not reached</source>
+        <translation>接続できません</translation>
+    </message>
+    <message>
+        <source>waiting to send %1</source>
+        <translation>未送信 %1 件</translation>
+    </message>
+    <message>
+        <source>School: %1</source>
+        <translation>学校: %1</translation>
+    </message>
+    <message>
+        <source>Finished work goes to the school by itself. Work that the school gave to do, and practice that you share, can be watched by its teachers.</source>
+        <translation>終えた作業は自動的に学校に送られます。学校の課題と、自分で公開した練習は、教員が見ることができます。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SchoolLink</name>
+    <message>
+        <source>The school&apos;s part of the program is not installed (handpiece-school).</source>
+        <translation>学校用プログラム（handpiece-school）がインストールされていません。</translation>
+    </message>
+    <message>
+        <source>The school&apos;s part of the program has ended; it begins again with the next tooth.</source>
+        <translation>学校用プログラムが終了しました。次に歯を開くと再び始まります。</translation>
     </message>
 </context>
 </TS>

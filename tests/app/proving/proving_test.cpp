@@ -8,6 +8,7 @@
 #include "app/simulation/live_session_fixture.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/mesh_io.h"
 #include "support/error_of.h"
 
 namespace handpiece::proving {
@@ -172,6 +173,15 @@ TEST_F(Proving, EasierConditionsAreTold) {
     s = honest();
     s.bur = std::make_shared<const instrument::Bur>("round:1.0x0.9", simulation::burOf("round:1.2x1.1")->profile());
     EXPECT_THAT(refused("false-bur.h5", s), HasSubstr("had another shape"));
+    // One whose name is a file that lies where the server runs: it is not opened.
+    const test::TemporaryFolder folder;
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    geometry::writeStl("bur.stl", simulation::burOf("round:1.2x1.1")->mesh());
+    ASSERT_NO_THROW((void)instrument::makeInstrument("bur.stl"));
+    s.bur = std::make_shared<const instrument::Bur>("bur.stl", simulation::burOf("round:1.2x1.1")->profile());
+    EXPECT_THAT(refused("file-bur.h5", s), HasSubstr("bur.stl is not in the catalogue"));
+    fs::current_path(before);
     s = honest();
     s.cuttingParameters.cutting *= 2.0;
     EXPECT_THAT(refused("sharp.h5", s), HasSubstr("cut otherwise"));

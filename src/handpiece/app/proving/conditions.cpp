@@ -8,6 +8,7 @@
 #include "handpiece/app/proving/proving.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case_bytes.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
@@ -50,6 +51,9 @@ class Conditions {
         SimulationSettings own = s;
         own.tissues = task_.toothCase.tissues;
         try {
+            // A name out of a session opens no file here.
+            if (geometry::meshFormatOf(name) != geometry::MeshFormat::unknown)
+                throw core::Error("a bur's file", name, "name one of the catalogue's");
             const instrument::Instrument known = instrument::makeInstrument(name);
             own.bur = known.bur, own.cuttingParameters = known.cuttingParameters;
         } catch (const core::Error&) {

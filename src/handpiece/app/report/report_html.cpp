@@ -73,6 +73,19 @@ input, button, select, textarea { background: #1d232d; border-color: #8a93a3; } 
 @media print { .site { display: none; } }
 )";
 
+/// Of live().
+constexpr std::string_view kLiveStyle = R"(
+body { max-width: none; }
+.tiles { list-style: none; padding: 0; display: grid; gap: 1rem; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); }
+.tiles.large { grid-template-columns: minmax(0, 70rem); }
+.tiles > li { border: 2px solid #c9ced6; border-radius: 8px; padding: 0.4rem; } .tiles p { margin: 0.2rem 0; }
+.tiles a { display: block; } .tiles img { width: 100%; height: auto; aspect-ratio: 8 / 5; background: #22262e; display: block; }
+.flags { list-style: none; padding: 0; margin: 0.2rem 0; color: #c62828; font-weight: 600; } .unseen { position: absolute; clip-path: inset(50%); }
+@media (prefers-color-scheme: dark) { .flags { color: #ff7b72; } .tiles > li { border-color: #3a4250; } }
+.tiles > li.late { border-style: dashed; border-color: #b26a00; } .tiles > li.gone { border-style: dotted; border-color: #767f8c; }
+.tiles > li.late .age, .tiles > li.gone .age { font-weight: 600; }
+)";
+
 std::string base64(std::span<const std::byte> bytes) {
     static constexpr char kLetters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string out;
@@ -293,6 +306,11 @@ void HtmlReport::review(const Review& review) {
     body_.insert(reviewAt_.value_or(body_.size()), all);
 }
 
+void HtmlReport::live(std::string_view html) {
+    isLive_ = true;
+    body_ += html;
+}
+
 void HtmlReport::begin(Group group) {
     constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds"};
     body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
@@ -307,16 +325,31 @@ std::string HtmlReport::text() const {
     const std::string policy =
         fmt::format("default-src 'none'; img-src data:; style-src 'unsafe-inline'; base-uri 'none'; form-action '{}'",
                     forms_ > 0 ? "self" : "none") +
-        (hasViewer_ ? fmt::format("; script-src 'sha256-{}'", scriptHash()) : std::string());
+        (hasViewer_ ? "; script-src " + viewerInPolicy() : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n"
-        "<style>{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
+"
+        "<link rel=\"icon\" href=\"data:,\">
+<title>{}</title>
+{}"
+        "<style>{}{}{}{}{}</style>
+</head>
+<body>
+{}<main id=\"main\">
+{}</main>
+{}{}</body>
+</html>
+",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),
-        escaped(title_), kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "", isSite ? kSiteStyle : "", site_, body_,
+        escaped(title_), isLive_ ? "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n" : "", kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
+        isSite ? kSiteStyle : "", isLive_ ? kLiveStyle : "", site_, body_,
         hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string(), script_);
+}
+
+std::string viewerInPolicy() {
+    return fmt::format("'sha256-{}'", scriptHash());
 }
 
 }  // namespace handpiece::report

@@ -83,14 +83,20 @@ class HtmlReport {
     void script(std::string_view address, std::string_view json);
     /// A place of its own for a module to draw in, with what stands there without script.
     void place(std::string_view id, std::string_view without);
+    /// What a module of the server keeps up in its page; where none runs the page is loaded again and again.
+    /// `html` is escaped where it has to be.
+    void live(std::string_view html);
     /// The page.
     [[nodiscard]] std::string text() const;
 
   private:
     std::string title_, body_, site_, script_;
     std::optional<std::size_t> reviewAt_;
-    bool hasViewer_ = false;
+    bool hasViewer_ = false, isLive_ = false;
     int forms_ = 0;
 };
+
+/// The script of review() as a content security policy names it: 'sha256-...'.
+[[nodiscard]] std::string viewerInPolicy();
 
 }  // namespace handpiece::report

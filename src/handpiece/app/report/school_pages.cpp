@@ -82,6 +82,7 @@ std::string classesPage(const Looker& who, const std::vector<school::SchoolClass
 
 std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names) {
     HtmlReport page = sitePage(of.schoolClass.name, who);
+    page.link("/classes/" + of.schoolClass.id + "/live", words()("school-live.watch"));
     std::vector<std::string> header{words()("class.student")};
     for (const school::Assignment& assignment : of.assignments)
         header.push_back(assignment.title);
@@ -149,6 +150,7 @@ std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const
         if (!s.reason.empty()) page.paragraph(s.reason, s.state == "proven" ? Tone::note : Tone::bad);
         if (!s.result.empty()) page.link("/attempts/" + a.id + "/result", words()("school.whole-result"));
     }
+    if (!p.files.empty()) page.link("/attempts/" + a.id + "/review", words()("school-live.review"));
     const auto fact = [](const char* word, std::string value) { return std::pair(words()(word), std::move(value)); };
     page.facts(words()("school.station-says"),
                {fact("school.finished", momentOf(a.finished)), fact("school.received", momentOf(p.received)),

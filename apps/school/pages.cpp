@@ -10,6 +10,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
 #include "school/review_shelf.h"
+#include "school/teaching.h"
 #include "school/visit.h"
 
 namespace handpiece::school_server {
@@ -38,7 +39,10 @@ Page classOf(const Visit& v, const std::string& id) {
         for (const school::Person& student : page.students)
             names[student.code] = student.name;
     noteLook(v, "class seen", "", id);
-    return {200, report::classPage(lookerOf(v), page, names)};
+    std::vector<report::HtmlReport::Cell> rooms;
+    if (may(v, Action::markBlind, relation))
+        rooms.push_back({words()("school-teaching.marking"), "/classes/" + id + "/marking"});
+    return {200, report::classPage(lookerOf(v), page, names, rooms)};
 }
 
 Page personOf(const Visit& v, const std::string& code) {
@@ -65,12 +69,20 @@ Page attemptOf(const Visit& v, const std::string& id) {
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
     if (!relation.isOwn) noteLook(v, "attempt seen", attempt->person, id);
     const bool seesMarks = may(v, Action::seeMarks, relation);
-    return {200,
-            report::attemptPage(lookerOf(v), *attempt, namesFor(v, relation, attempt->person), v.books.scoresOf(id),
-                                seesMarks ? v.books.marksOf(id) : std::vector<school::Mark>{},
-                                seesMarks ? v.books.commentsOn(id) : std::vector<school::Comment>{}),
-            {},
-            {}};
+    std::vector<school::Mark> marks;
+    std::vector<school::Comment> comments;
+    if (seesMarks) comments = v.books.commentsOn(id);
+    if (relation.isOwn) {
+        // Their own once they are released.
+        ReleasedMarks released = releasedMarks(v, *attempt);
+        marks = std::move(released.marks);
+        for (school::Comment& one : released.comments)
+            comments.push_back(std::move(one));
+    } else if (seesMarks && !marksBlindStill(v, attempt->assignment)) {
+        marks = v.books.marksOf(id);
+    }
+    return {200, report::attemptPage(lookerOf(v), *attempt, namesFor(v, relation, attempt->person),
+                                     v.books.scoresOf(id), marks, comments)};
 }
 
 Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {

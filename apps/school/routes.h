@@ -33,5 +33,6 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 
 }  // namespace handpiece::school_server

@@ -170,7 +170,7 @@ void furnish(const fs::path& data, const SimulatedSchool& s, const std::string& 
                                  act.at - 1000, act.at + 1'000'000'000},
               act);
     for (std::size_t i = 0; i < s.stations; ++i)
-        books.offerCode(fmt::format("CODE-{}", i), fmt::format("chair {}", i + 1), act.at + 1'000'000'000, act);
+        books.offerCode(fmt::format("CODE-{:06}", i), fmt::format("chair {}", i + 1), act.at + 1'000'000'000, act);
 }
 
 /// A station with a home of its own and the real side of its.
@@ -187,7 +187,7 @@ class Station {
           settings_(s),
           store_((fs::create_directories(home / "sessions"), home / "results.db")) {
         school_station::Enrolment e =
-            school_station::enrol(server, fmt::format("CODE-{}", number), fmt::format("s{}", number));
+            school_station::enrol(server, fmt::format("CODE-{:06}", number), fmt::format("s{}", number));
         school_station::writeEnrolment(e, home / "school.json");
         service_ = std::make_unique<school_station::StationService>(
             school_station::StationFolders{home, home / "sessions"}, [this](const school_station::Standing& standing) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "school/visit.h"
 
+#include <algorithm>
+
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/people/secret.h"
 
@@ -27,6 +29,10 @@ std::optional<Role> roleIn(const Books& books, const std::string& schoolClass, c
 report::Looker lookerOf(const Visit& v) {
     // A way for each room of pages, to those who may see it.
     std::vector<report::HtmlReport::Way> ways;
+    const std::vector<Role> roles = rolesOf(v.person);
+    const auto has = [&](Role role) { return std::find(roles.begin(), roles.end(), role) != roles.end(); };
+    if (has(Role::teacher) || has(Role::examiner))
+        ways.push_back({"/marking", config::words()("school-teaching.marking")});
     const auto office = [](const char* id) { return config::words()(std::string("school-office.") + id); };
     if (may(v, Action::managePeople, {})) ways.push_back({"/office/people", office("people")});
     if (may(v, Action::manageClasses, {})) ways.push_back({"/office/classes", office("classes")});

@@ -14,9 +14,11 @@ CHROMIUM = [name for name in ("chromium", "chromium-browser", "google-chrome") i
 
 class Review(SystemTest):
     @unittest.skipUnless(shutil.which("tsc"), "no tsc (Debian: node-typescript)")
-    def test_the_viewer_is_of_one_piece(self):
-        done = subprocess.run(["tsc", "-p", ROOT / "apps" / "web" / "viewer"], capture_output=True, text=True, check=False)
-        self.assertEqual(done.returncode, 0, done.stdout)
+    def test_the_modules_are_of_one_piece(self):
+        for folder in ("viewer", "live"):
+            done = subprocess.run(["tsc", "-p", ROOT / "apps" / "web" / folder], capture_output=True, text=True,
+                                  check=False)
+            self.assertEqual(done.returncode, 0, done.stdout)
 
     def work(self, page, *options):
         done = subprocess.run(["node", ROOT / "tests" / "web" / "review_test.mjs", page, *options],

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // A school with people of every role and real work, served until the input ends: for a browser to walk through.
+#include <atomic>
 #include <cstdio>
 
 #include "handpiece/school/people/secret.h"
 #include "school/server/school_fixture.h"
+#include "school/server/small_picture.h"
 #include "school/worker.h"
 
 namespace handpiece::school_server {
@@ -68,10 +70,26 @@ void serve() {
     Chair chair;
     fill(folder.path() / "school", chair);
     const School school(folder.path() / "school", 1);
+    // Somebody is at work all the while.
+    std::atomic<bool> ends{false};
+    std::thread working([&] {
+        httplib::Client http(school.address());
+        http.set_default_headers({{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + std::string(64, 'd')}});
+        school_wire::Live live;
+        live.person = "s017", live.assignment = "as1";
+        live.exerciseHash = rubric::hashText(tasks::contentHash(blockTask()));
+        live.flags = {"pulp-exposed", "neighbour-cut"};
+        for (; !ends; std::this_thread::sleep_for(std::chrono::milliseconds(500))) {
+            live.elapsedS += 0.5, live.removedMm3 += 0.01, live.picture = picture();
+            (void)http.Put("/api/v1/live", toBytes(live), "application/octet-stream");
+        }
+    });
     std::printf("%s\n", school.address().c_str());
     std::fflush(stdout);
     while (std::getchar() != EOF) {
     }
+    ends = true;
+    working.join();
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST_F(OfficeTest, AddsAPersonWhoSetsTheirOwnPasswordByACodeThatIsShownOnce) {
     Browser kei(school_->address());
     const std::string password = "correct horse battery";
     const auto set = [&](const std::string& with, const std::string& one, const std::string& two) {
-        return kei.post("/first", {{"login", "kei"}, {"code", with}, {"new", one}, {"again", two}});
+        return kei.post("/first", httplib::Params{{"login", "kei"}, {"code", with}, {"new", one}, {"again", two}});
     };
     EXPECT_THAT(set(code, password, "another one that is long")->body, HasSubstr("not the same"));
     EXPECT_THAT(set(code, "short", "short")->body, HasSubstr("fewer than 10"));
@@ -90,10 +90,10 @@ TEST_F(OfficeTest, ACodeIsGuessedNoFasterThanAPassword) {
     int tried = 0;
     Browser stranger(school_->address());
     while (stranger
-               .post("/first", {{"login", "jun"},
-                                {"code", "AAA-AAA-AAA-AAA"},
-                                {"new", "long enough, this"},
-                                {"again", "long enough, this"}})
+               .post("/first", httplib::Params{{"login", "jun"},
+                                               {"code", "AAA-AAA-AAA-AAA"},
+                                               {"new", "long enough, this"},
+                                               {"again", "long enough, this"}})
                ->status == 401)
         ++tried;
     EXPECT_EQ(tried, 5);

@@ -4,44 +4,12 @@
 /// People at browsers, and a school in which each role is somebody.
 
 #include <functional>
-#include <regex>
 
 #include "handpiece/school/people/secret.h"
-#include "school/server/school_fixture.h"
+#include "school/server/browser.h"
 #include "school/worker.h"
 
 namespace handpiece::school_server {
-
-inline constexpr const char* kPassword = "a long enough one";
-
-/// Somebody at a browser.
-class Browser {
-  public:
-    explicit Browser(const std::string& address) : http_(address) {}
-    httplib::Result get(const std::string& path) { return http_.Get(path, headers()); }
-    httplib::Result post(const std::string& path, const httplib::Params& form) {
-        httplib::Result result = http_.Post(path, headers(), form);
-        if (result) take(*result);
-        return result;
-    }
-    int logIn(const std::string& login, const std::string& password = kPassword) {
-        const auto result = post("/login", {{"login", login}, {"password", password}});
-        return result ? result->status : 0;
-    }
-    [[nodiscard]] const std::string& cookie() const { return cookie_; }
-
-  private:
-    [[nodiscard]] httplib::Headers headers() const {
-        return cookie_.empty() ? httplib::Headers{} : httplib::Headers{{"Cookie", "handpiece=" + cookie_}};
-    }
-    void take(const httplib::Response& response) {
-        const std::string set = response.get_header_value("Set-Cookie");
-        std::smatch found;
-        if (std::regex_search(set, found, std::regex("handpiece=([0-9a-f]*);"))) cookie_ = found[1];
-    }
-    httplib::Client http_;
-    std::string cookie_;
-};
 
 /// One that a route's pattern fits; `named`: what stands for a group, by its number from 0; else 32 letters a, or the
 /// first of several words.

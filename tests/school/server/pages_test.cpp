@@ -100,7 +100,8 @@ TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
         ++tried;
     EXPECT_EQ(tried, 5);
     EXPECT_EQ(browser.logIn("t1"), 429) << "the right one waits too";
-    EXPECT_THAT(browser.post("/login", {{"login", "t1"}, {"password", "x"}})->body, HasSubstr("Try again in"));
+    EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body,
+                HasSubstr("Try again in"));
     EXPECT_TRUE(browser.cookie().empty());
 }
 
@@ -110,12 +111,12 @@ TEST_F(PagesTest, ALogInEnds) {
     ASSERT_EQ(browser.logIn("t1"), 303);
     const std::string old = browser.cookie();
     // From another page than one of this log-in: nothing happens.
-    EXPECT_EQ(browser.post("/logout", {{"token", "guess"}})->status, 403);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", "guess"}})->status, 403);
     EXPECT_EQ(browser.get("/classes")->status, 200);
     const std::string page = browser.get("/classes")->body;
     std::smatch token;
     ASSERT_TRUE(std::regex_search(page, token, std::regex("name=\"token\" value=\"([0-9a-f]+)\"")));
-    EXPECT_EQ(browser.post("/logout", {{"token", token[1].str()}})->status, 303);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", token[1].str()}})->status, 303);
     httplib::Client http(school.address());
     EXPECT_EQ(http.Get("/classes", {{"Cookie", "handpiece=" + old}})->status, 303);
     // Whoever is erased is nobody from then on.

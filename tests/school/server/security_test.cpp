@@ -268,8 +268,9 @@ TEST_F(SecurityTest, AGivenLogInIsNotTakenOver) {
     for (const Route& route : Server::routes()) {
         if (route.caller != Caller::person || route.method != "POST") continue;
         const std::string path = addressOf(route.pattern);
-        EXPECT_EQ(teacher.post(path, {})->status, 403) << path;
-        EXPECT_EQ(teacher.post(path, {{"token", school::requestTokenOf(other.cookie())}})->status, 403) << path;
+        EXPECT_EQ(teacher.post(path, httplib::Params{})->status, 403) << path;
+        EXPECT_EQ(teacher.post(path, httplib::Params{{"token", school::requestTokenOf(other.cookie())}})->status, 403)
+            << path;
     }
 }
 

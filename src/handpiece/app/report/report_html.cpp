@@ -246,6 +246,12 @@ void HtmlReport::place(std::string_view id, std::string_view without) {
     body_ += fmt::format("<section id=\"{}\"><p class=\"missing\">{}</p></section>\n", escaped(id), escaped(without));
 }
 
+void HtmlReport::progress(double done, double all, std::string_view words) {
+    body_ +=
+        fmt::format("<p role=\"status\"><progress max=\"{0}\" value=\"{1}\" aria-label=\"{2}\"></progress> {2}</p>\n",
+                    all, done, escaped(words));
+}
+
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
     std::vector<std::vector<std::string>> cells;
     for (const auto& [what, value] : rows)
@@ -328,24 +334,15 @@ std::string HtmlReport::text() const {
         (hasViewer_ ? "; script-src " + viewerInPolicy() : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">
-"
-        "<link rel=\"icon\" href=\"data:,\">
-<title>{}</title>
-{}"
-        "<style>{}{}{}{}{}</style>
-</head>
-<body>
-{}<main id=\"main\">
-{}</main>
-{}{}</body>
-</html>
-",
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+        "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n{}"
+        "<style>{}{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),
-        escaped(title_), isLive_ ? "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n" : "", kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "",
-        isSite ? kSiteStyle : "", isLive_ ? kLiveStyle : "", site_, body_,
-        hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string(), script_);
+        escaped(title_), isLive_ ? "<noscript><meta http-equiv=\"refresh\" content=\"4\"></noscript>\n" : "",
+        kPageStyle, svgStyle(), hasViewer_ ? kViewerStyle : "", isSite ? kSiteStyle : "", isLive_ ? kLiveStyle : "",
+        site_, body_, hasViewer_ ? fmt::format("<script type=\"module\">{}</script>\n", kViewerScript) : std::string(),
+        script_);
 }
 
 std::string viewerInPolicy() {

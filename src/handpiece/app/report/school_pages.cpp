@@ -80,9 +80,12 @@ std::string classesPage(const Looker& who, const std::vector<school::SchoolClass
     return page.text();
 }
 
-std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names) {
+std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names,
+                      const std::vector<Cell>& rooms) {
     HtmlReport page = sitePage(of.schoolClass.name, who);
     page.link("/classes/" + of.schoolClass.id + "/live", words()("school-live.watch"));
+    for (const Cell& room : rooms)
+        page.link(room.address, room.text);
     std::vector<std::string> header{words()("class.student")};
     for (const school::Assignment& assignment : of.assignments)
         header.push_back(assignment.title);

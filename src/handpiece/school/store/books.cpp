@@ -381,15 +381,19 @@ ClassPage Books::classPage(const std::string& schoolClass) const {
     {
         // How many and which is the last: answered by the index attempts_by_assignment alone.
         Statement rows = state_->ask(
-            "SELECT r.assignment, r.person, r.n, t.id, t.finished, coalesce(s.state, 'provisional'), "
-            "coalesce(s.score, t.score), coalesce(s.max_score, t.max_score), coalesce(s.passed, t.passed), "
-            "coalesce(s.reason, ''), (SELECT count(*) FROM marks m WHERE m.attempt = t.id) "
-            "FROM (SELECT x.assignment, x.person, count(*) AS n FROM assignments a JOIN attempts x ON x.assignment = "
-            "a.id WHERE a.class = $1 GROUP BY x.assignment, x.person) r JOIN attempts t ON t.id = (SELECT l.id FROM "
-            "attempts l WHERE l.assignment = r.assignment AND l.person = r.person ORDER BY l.finished DESC, l.id DESC "
-            "LIMIT 1) "
-            "LEFT JOIN scores s ON s.job = (SELECT max(l.job) FROM scores l WHERE l.attempt = t.id) "
-            "ORDER BY r.assignment, r.person",
+            fmt::format("SELECT r.assignment, r.person, r.n, t.id, t.finished, coalesce(s.state, 'provisional'), "
+                        "coalesce(s.score, t.score), coalesce(s.max_score, t.max_score), coalesce(s.passed, t.passed), "
+                        "coalesce(s.reason, ''), (SELECT count(*) FROM marks m WHERE m.attempt = t.id) "
+                        "FROM (SELECT x.assignment, x.person, count(*) AS n FROM assignments a JOIN attempts x ON "
+                        "x.assignment = "
+                        "a.id WHERE a.class = $1 GROUP BY x.assignment, x.person) r JOIN attempts t ON t.id = (SELECT "
+                        "l.id FROM "
+                        "attempts l WHERE l.assignment = r.assignment AND l.person = r.person ORDER BY l.finished "
+                        "DESC, l.id DESC "
+                        "LIMIT 1) "
+                        "LEFT JOIN scores s ON s.job = {} ORDER BY r.assignment, r.person",
+                        kCountingJob)
+                .c_str(),
             schoolClass);
         while (rows.next())
             page.cells.push_back({rows.text(1), rows.text(0), rows.integer(2), rows.text(3), rows.integer(4),
@@ -425,6 +429,8 @@ std::int64_t Books::expire(const Act& act) {
                  {"DELETE FROM scores WHERE attempt = $1", "DELETE FROM jobs WHERE attempt = $1",
                   "DELETE FROM marks WHERE attempt = $1", "DELETE FROM comments WHERE attempt = $1",
                   "DELETE FROM judgements WHERE attempt = $1", "DELETE FROM shares WHERE attempt = $1",
+                  "DELETE FROM sheets WHERE attempt = $1", "DELETE FROM releases WHERE attempt = $1",
+                  "DELETE FROM calibrations WHERE attempt = $1", "DELETE FROM exemplars WHERE attempt = $1",
                   "DELETE FROM attempt_files WHERE attempt = $1", "DELETE FROM attempts WHERE id = $1"})
                 state_->run(sql, id);
             for (const std::string& file : files)

@@ -242,7 +242,7 @@ class Books {
                                                         const std::string& assignment = {}) const;
     /// Another person whose attempt has one of this one's files too: a session is one person's. None: nobody.
     [[nodiscard]] std::optional<std::string> otherPersonWith(const std::string& attempt) const;
-    /// In their order.
+    /// In their order, the one that counts last (Teaching::setCounting; without a choice the last one).
     [[nodiscard]] std::vector<Score> scoresOf(const std::string& attempt) const;
     bool push(const Mark& mark, const Act& act);
     [[nodiscard]] std::vector<Mark> marksOf(const std::string& attempt) const;

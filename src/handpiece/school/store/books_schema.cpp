@@ -109,6 +109,42 @@ CREATE TABLE incarnation (id TEXT PRIMARY KEY) STRICT;
 )sql",
     // Teaching: marking, standards, exemplars.
     R"sql(
+CREATE TABLE desks (
+  assignment TEXT NOT NULL REFERENCES assignments (id), marker TEXT NOT NULL REFERENCES people (code),
+  seed TEXT NOT NULL, made INT8 NOT NULL, PRIMARY KEY (assignment, marker)) STRICT;
+CREATE TABLE desk_works (
+  assignment TEXT NOT NULL, marker TEXT NOT NULL, batch INT8 NOT NULL, place INT8 NOT NULL, attempt TEXT NOT NULL,
+  PRIMARY KEY (assignment, marker, batch, place), FOREIGN KEY (assignment, marker) REFERENCES desks) STRICT;
+CREATE TABLE sheets (
+  assignment TEXT NOT NULL, marker TEXT NOT NULL, code TEXT NOT NULL, attempt TEXT NOT NULL REFERENCES attempts (id),
+  content TEXT NOT NULL, is_in INT8 NOT NULL, changed INT8 NOT NULL, PRIMARY KEY (assignment, marker, code),
+  FOREIGN KEY (assignment, marker) REFERENCES desks) STRICT;
+CREATE INDEX sheets_by_attempt ON sheets (attempt);
+CREATE TABLE marking_rules (
+  assignment TEXT PRIMARY KEY REFERENCES assignments (id), differ_percent FLOAT8 NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE releases (attempt TEXT PRIMARY KEY REFERENCES attempts (id), made INT8 NOT NULL) STRICT;
+CREATE TABLE campaigns (
+  id TEXT PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  rubric TEXT NOT NULL REFERENCES rubrics (hash), who TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE INDEX campaigns_by_assignment ON campaigns (assignment);
+CREATE TABLE counting (
+  assignment TEXT PRIMARY KEY REFERENCES assignments (id), campaign TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE estimates (
+  assignment TEXT NOT NULL REFERENCES assignments (id), judge TEXT NOT NULL REFERENCES people (code),
+  round INT8 NOT NULL CHECK (round IN (1, 2)), criterion TEXT NOT NULL, percent FLOAT8 NOT NULL, made INT8 NOT NULL,
+  PRIMARY KEY (assignment, judge, round, criterion)) STRICT;
+CREATE TABLE standards (
+  id TEXT PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  method TEXT NOT NULL CHECK (method IN ('angoff', 'borderline')), content TEXT NOT NULL, who TEXT NOT NULL,
+  made INT8 NOT NULL) STRICT;
+CREATE INDEX standards_by_assignment ON standards (assignment);
+CREATE TABLE exemplars (
+  attempt TEXT PRIMARY KEY REFERENCES attempts (id), assignment TEXT NOT NULL REFERENCES assignments (id),
+  content TEXT NOT NULL, who TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE INDEX exemplars_by_assignment ON exemplars (assignment);
+CREATE TABLE calibrations (
+  attempt TEXT NOT NULL REFERENCES attempts (id), marker TEXT NOT NULL REFERENCES people (code), content TEXT NOT NULL,
+  made INT8 NOT NULL, PRIMARY KEY (attempt, marker)) STRICT;
 )sql",
     // Exams and other systems.
     R"sql(

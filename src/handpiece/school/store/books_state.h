@@ -37,6 +37,12 @@ void requireText(std::string_view text);
 /// Throws for infinity and what is no number; -0 becomes 0, which SQLite makes of it too.
 [[nodiscard]] double requireNumber(double number);
 
+/// The score of attempt `t` that counts: of the campaign that its assignment counts (Teaching::setCounting), else the
+/// last.
+inline constexpr const char* kCountingJob =
+    "(SELECT l.job FROM scores l LEFT JOIN counting k ON k.assignment = t.assignment AND k.campaign = l.campaign "
+    "WHERE l.attempt = t.id ORDER BY CASE WHEN k.campaign IS NULL THEN 0 ELSE 1 END DESC, l.job DESC LIMIT 1)";
+
 struct Books::State {
     std::unique_ptr<Database> database;
     ContentFiles files;
@@ -62,6 +68,8 @@ struct Books::State {
     void requirePerson(const std::string& code);
     void requireAttempt(const std::string& id);
     void requireClass(const std::string& id);
+    /// In a transaction that writes; false: it was there, the same.
+    bool push(const Mark& mark, const Act& act);
     /// In a transaction that writes: attempts that are whole by now wait to be scored.
     void queueArrived(const std::string& attempt, Milliseconds now);
     void keepFile(const std::string& hash, Milliseconds now);

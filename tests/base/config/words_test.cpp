@@ -91,9 +91,9 @@ TEST(Words, EveryTextThatIsUsedIsThereAndEveryOneIsUsed) {
     for (const auto& [id, text] : Words::in("en").texts()) {
         // Names of families are put together: a tissue, a finding, a verdict, what scheduling, where figures come from.
         bool isFamily = false;
-        for (const char* family :
-             {"tissue.", "fidelity.name.", "fidelity.verdict.", "scheduling.class.", "rubric.status.", "view.",
-              "measure.", "assessment.scan-on-", "school-exam.", "school-live.flag-", "school-office."})
+        for (const char* family : {"tissue.", "fidelity.name.", "fidelity.verdict.", "scheduling.class.",
+                                   "rubric.status.", "view.", "measure.", "assessment.scan-on-", "school-exam.",
+                                   "school-exam.kind-", "school-exam.state-", "school-live.flag-", "school-office."})
             isFamily = isFamily || (id.rfind(family, 0) == 0 &&
                                     all.find('"' + id.substr(std::string(family).size()) + '"') != std::string::npos);
         EXPECT_TRUE(isFamily || asked.count(id) > 0 || isEvent(id) || all.find('"' + id + '"') != std::string::npos)

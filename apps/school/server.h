@@ -28,6 +28,9 @@ struct Settings {
     std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
     std::size_t threads = 128;         ///< each serves one connection, also while it waits for the next question
     std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
+    std::string address{};             ///< as browsers know it, https://school.example; for log-ins from elsewhere
+    SignOn signOn{};
+    bool keepsHouse = true;  ///< sends grades, lets go what need not be kept
 };
 /// Since 1970, UTC.
 using Clock = std::function<school::Milliseconds()>;

@@ -30,8 +30,8 @@ Address addressOf(const std::string& address) {
     const std::size_t path = std::min(address.find_first_of("/?#", scheme + 3), address.size());
     const std::string server = address.substr(0, path), host = server.substr(scheme + 3);
     // Without TLS only this very machine: a test, or a proxy on it.
-    const bool isHere = host == "127.0.0.1" || host.starts_with("127.0.0.1:") || host == "localhost" ||
-                        host.starts_with("localhost:");
+    const bool isHere =
+        host == "127.0.0.1" || host.starts_with("127.0.0.1:") || host == "localhost" || host.starts_with("localhost:");
     if (host.empty() || host.find('@') != host.npos ||
         !(server.starts_with("https://") || (server.starts_with("http://") && isHere)))
         throw wrong();
@@ -39,7 +39,8 @@ Address addressOf(const std::string& address) {
     return {server, rest.starts_with('/') ? rest : "/" + rest};
 }
 
-Elsewhere asked(const std::string& address, const std::function<httplib::Result(httplib::Client&, const std::string&)>& ask) {
+Elsewhere asked(const std::string& address,
+                const std::function<httplib::Result(httplib::Client&, const std::string&)>& ask) {
     const Address at = addressOf(address);
     httplib::Client http(at.server);
     http.set_connection_timeout(10);
@@ -47,8 +48,8 @@ Elsewhere asked(const std::string& address, const std::function<httplib::Result(
     http.set_follow_location(false);
     const httplib::Result result = ask(http, at.path);
     if (!result)
-        throw core::Error(fmt::format("nobody answers there ({})", httplib::to_string(result.error())),
-                          at.server, "try again later")
+        throw core::Error(fmt::format("nobody answers there ({})", httplib::to_string(result.error())), at.server,
+                          "try again later")
             .as("platform-silent", {httplib::to_string(result.error())});
     if (result->body.size() > kMostAnswer)
         throw core::Error("too much is answered there", at.server, "check its address")

@@ -65,7 +65,9 @@ void retention(const ElsewhereOptions& o) {
     } else if (o.practiceDays >= 0 || o.closedDays >= 0) {
         throw core::Error("of which class?", "--class", "name its id");
     }
-    const auto told = [](std::int64_t days) { return days == 0 ? std::string("for good") : fmt::format("{} days", days); };
+    const auto told = [](std::int64_t days) {
+        return days == 0 ? std::string("for good") : fmt::format("{} days", days);
+    };
     fmt::print("practice of nobody's class: {}\n", told(retention.ofPersonal()));
     for (const school::SchoolClass& one : books.classes()) {
         const school::RetentionRules rules = retention.ofClass(one.id);
@@ -124,7 +126,8 @@ void addElsewhereCommands(cli::Command& app) {
     platform.option("--keys", o.platform.keysAddress, "its key set").required();
     platform.option("--deployment", o.platform.deployments, "id of a deployment; several times").required().takeAll();
     platform.callback([options] { setPlatform(*options); });
-    cli::Command person = lti.subcommand("person", "What other systems call a person: single sign-on, LTI, class lists");
+    cli::Command person =
+        lti.subcommand("person", "What other systems call a person: single sign-on, LTI, class lists");
     books(person);
     person.option("CODE", o.person, "of the person").required();
     person.option("EXTERNAL", o.external, "their id there").required();

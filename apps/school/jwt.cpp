@@ -216,8 +216,8 @@ std::string claimsOf(std::string_view token, std::string_view keySet) {
         throw core::Error("the token is not what the platform signed", "token", "begin anew, from the platform")
             .as("token-forged");
     }
-    throw core::Error(fmt::format("the platform has no key \"{}\" of 2048 bits or more", wanted.substr(0, 40)), "key set",
-                      "if it changed its keys, try again in a minute")
+    throw core::Error(fmt::format("the platform has no key \"{}\" of 2048 bits or more", wanted.substr(0, 40)),
+                      "key set", "if it changed its keys, try again in a minute")
         .as("token-key");
 }
 

@@ -30,8 +30,8 @@ class RsaKey {
     std::unique_ptr<State> state_;
 };
 
-/// The claims of a token, as JSON, after its signature was checked by the key of a set that it names. Throws core::Error:
-/// "token-damaged", "token-key" (none of the set's, or too short), "token-forged".
+/// The claims of a token, as JSON, after its signature was checked by the key of a set that it names. Throws
+/// core::Error: "token-damaged", "token-key" (none of the set's, or too short), "token-forged".
 [[nodiscard]] std::string claimsOf(std::string_view token, std::string_view keySet);
 
 }  // namespace handpiece::school_server

@@ -36,7 +36,8 @@ class KeySets {
         {
             const std::lock_guard lock(mutex_);
             const auto found = sets_.find(address);
-            if (found != sets_.end() && now - found->second.at < (isStale ? 60'000 : 600'000)) return found->second.text;
+            if (found != sets_.end() && now - found->second.at < (isStale ? 60'000 : 600'000))
+                return found->second.text;
         }
         const Elsewhere answer = fetch(address);
         if (answer.status != 200)
@@ -90,10 +91,12 @@ void requireClaims(const Json& c, const school::LtiPlatform& platform, const std
     const std::int64_t nowS = now / 1000;
     if (text(c, "iss") != platform.issuer) throw claim("iss", "another platform's");
     const Json& aud = at(c, "aud");
-    const bool isOurs = aud.is_string() ? aud.get<std::string>() == platform.client
-                                        : aud.is_array() && std::find(aud.begin(), aud.end(), platform.client) != aud.end();
+    const bool isOurs = aud.is_string()
+                            ? aud.get<std::string>() == platform.client
+                            : aud.is_array() && std::find(aud.begin(), aud.end(), platform.client) != aud.end();
     if (!isOurs) throw claim("aud", "not for this server");
-    if (aud.is_array() && aud.size() > 1 && text(c, "azp") != platform.client) throw claim("azp", "not for this server");
+    if (aud.is_array() && aud.size() > 1 && text(c, "azp") != platform.client)
+        throw claim("azp", "not for this server");
     if (c.contains("azp") && text(c, "azp") != platform.client) throw claim("azp", "not for this server");
     const std::int64_t made = seconds(c, "iat"), ends = seconds(c, "exp");
     if (ends + kSkewS <= nowS) throw claim("exp", "it is too old");
@@ -113,8 +116,7 @@ void requireClaims(const Json& c, const school::LtiPlatform& platform, const std
 
 school::Person personOf(const LtiBooks& lti, const Json& c) {
     // The class list's id, where the platform has it (OneRoster), else its own.
-    for (const std::string& known :
-         {text(at(c, std::string(kClaim) + "lis"), "person_sourcedid"), text(c, "sub")})
+    for (const std::string& known : {text(at(c, std::string(kClaim) + "lis"), "person_sourcedid"), text(c, "sub")})
         if (!known.empty())
             if (auto person = lti.personByExternal(known)) return *person;
     throw core::Error("this school's books do not know who you are on that platform", "launch",
@@ -135,19 +137,19 @@ std::string bodyOf(const school::LtiLine& line, const school::Worth& worth) {
 
 std::string bearerOf(const school::LtiPlatform& platform, const RsaKey& key, Milliseconds now) {
     const std::int64_t nowS = now / 1000;
-    const std::string assertion = key.signedToken(Json{{"iss", platform.client},
-                                                       {"sub", platform.client},
-                                                       {"aud", platform.tokenAddress},
-                                                       {"iat", nowS},
-                                                       {"exp", nowS + 300},
-                                                       {"jti", school::newId()}}
-                                                      .dump());
+    const std::string assertion = key.signedToken(Json{
+        {"iss", platform.client},
+        {"sub", platform.client},
+        {"aud", platform.tokenAddress},
+        {"iat", nowS},
+        {"exp", nowS + 300},
+        {"jti", school::newId()}}.dump());
     httplib::Params form{{"grant_type", "client_credentials"},
                          {"client_assertion_type", "urn:ietf:params:oauth:client-assertion-type:jwt-bearer"},
                          {"client_assertion", assertion},
                          {"scope", kScoreScope}};
-    const Elsewhere answer = post(platform.tokenAddress, httplib::detail::params_to_query_str(form),
-                                  "application/x-www-form-urlencoded");
+    const Elsewhere answer =
+        post(platform.tokenAddress, httplib::detail::params_to_query_str(form), "application/x-www-form-urlencoded");
     const Json json = Json::parse(answer.body, nullptr, false);
     const std::string token = answer.status == 200 ? text(json, "access_token") : std::string();
     if (token.empty() || token.size() > 8000 ||
@@ -177,18 +179,13 @@ Beginning beginLaunch(Books& books, const std::string& issuer, const std::string
     Beginning beginning{platform->authAddress, school::newSecret()};
     const std::string nonce = school::newSecret();
     lti.begin(beginning.state, nonce, platform->id, now);
-    httplib::Params asks{{"scope", "openid"},
-                         {"response_type", "id_token"},
-                         {"response_mode", "form_post"},
-                         {"prompt", "none"},
-                         {"client_id", platform->client},
-                         {"redirect_uri", ownAddress + "/lti/launch"},
-                         {"login_hint", hint},
-                         {"state", beginning.state},
-                         {"nonce", nonce}};
+    httplib::Params asks{
+        {"scope", "openid"},  {"response_type", "id_token"},   {"response_mode", "form_post"},
+        {"prompt", "none"},   {"client_id", platform->client}, {"redirect_uri", ownAddress + "/lti/launch"},
+        {"login_hint", hint}, {"state", beginning.state},      {"nonce", nonce}};
     if (!messageHint.empty()) asks.emplace("lti_message_hint", messageHint);
-    beginning.to += (beginning.to.find('?') == std::string::npos ? "?" : "&") +
-                    httplib::detail::params_to_query_str(asks);
+    beginning.to +=
+        (beginning.to.find('?') == std::string::npos ? "?" : "&") + httplib::detail::params_to_query_str(asks);
     return beginning;
 }
 
@@ -258,9 +255,9 @@ std::size_t sendGrades(Books& books, const RsaKey& key, const std::function<Mill
             if (!platform) throw core::Error("its platform is gone");
             std::string& bearer = bearers[platform->id];
             if (bearer.empty()) bearer = bearerOf(*platform, key, clock());
-            const Elsewhere answer = post(scoresAddress(grade->line.address), grade->body,
-                                          "application/vnd.ims.lis.v1.score+json",
-                                          {{"Authorization", "Bearer " + bearer}});
+            const Elsewhere answer =
+                post(scoresAddress(grade->line.address), grade->body, "application/vnd.ims.lis.v1.score+json",
+                     {{"Authorization", "Bearer " + bearer}});
             if (answer.status < 200 || answer.status > 299)
                 problem = fmt::format("the platform answers {}", answer.status);
             if (answer.status == 401) bearer.clear();

@@ -18,7 +18,8 @@ namespace handpiece::school_cli {
 namespace {
 
 struct ServeOptions {
-    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key, address, signOnSecret, signOnHeader = "X-Handpiece-User";
+    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key, address, signOnSecret,
+                signOnHeader = "X-Handpiece-User";
     std::vector<std::string> signOnProxies;
     std::size_t workers = 1;
     bool worker = false;
@@ -35,7 +36,8 @@ std::string secretIn(const std::string& file) {
     while (!secret.empty() && (secret.back() == '\n' || secret.back() == ' '))
         secret.pop_back();
     if (secret.size() < 32)
-        throw core::Error("the proxy's secret is too short", file, "32 characters or more, by chance: openssl rand -hex 32");
+        throw core::Error("the proxy's secret is too short", file,
+                          "32 characters or more, by chance: openssl rand -hex 32");
     return secret;
 }
 

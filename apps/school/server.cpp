@@ -31,7 +31,8 @@ constexpr time_t kKeepAliveS = 5;
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
-    for (const auto room : {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes})
+    for (const auto room :
+         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;

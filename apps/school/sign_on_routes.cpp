@@ -63,15 +63,17 @@ Page welcome(Service& of, const school::Person& person, const std::string& to, c
 void signOn(Service& of, const Request& request, Response& response) {
     const SignOn& settings = of.settings.signOn;
     const std::string said = request.get_header_value(settings.header.c_str());
-    const bool isProxy = std::find(settings.proxies.begin(), settings.proxies.end(), request.remote_addr) !=
-                         settings.proxies.end();
-    const bool knowsSecret = !settings.secret.empty() &&
-                             school::isSameSecret(school::sha256(request.get_header_value("X-Handpiece-Secret")),
-                                                  school::sha256(settings.secret));
+    const bool isProxy =
+        std::find(settings.proxies.begin(), settings.proxies.end(), request.remote_addr) != settings.proxies.end();
+    const bool knowsSecret =
+        !settings.secret.empty() && school::isSameSecret(school::sha256(request.get_header_value("X-Handpiece-Secret")),
+                                                         school::sha256(settings.secret));
     if (!isProxy || !knowsSecret || said.empty() || said.size() > 200) {
         if (!said.empty())
             noteRefusal(of, "sign-on refused", request.remote_addr,
-                        !isProxy ? "no proxy of ours" : !knowsSecret ? "without the proxy's secret" : "no name");
+                        !isProxy       ? "no proxy of ours"
+                        : !knowsSecret ? "without the proxy's secret"
+                                       : "no name");
         return answer(response, refused(words()("school-exam.no-sign-on"), 403), of.isSecure());
     }
     std::optional<school::Person> person;

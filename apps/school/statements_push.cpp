@@ -25,9 +25,8 @@ class Reached {
         const std::vector<std::byte> bytes = core::readFile(file_, 1 << 20);
         const auto* from = reinterpret_cast<const char*>(bytes.data());
         all_ = Json::parse(from, from + bytes.size(), nullptr, false);
-        const bool isWell = all_.is_object() && std::all_of(all_.begin(), all_.end(), [](const Json& one) {
-                                return one.is_number_integer();
-                            });
+        const bool isWell = all_.is_object() && std::all_of(all_.begin(), all_.end(),
+                                                            [](const Json& one) { return one.is_number_integer(); });
         if (!isWell)
             throw core::Error("it cannot be read how far the statements went", file_.string(),
                               "move the file away: all go again, and none is doubled there")

@@ -14,12 +14,12 @@
 namespace handpiece::school_station {
 
 struct RecordStore {
-    std::string address{};         ///< of its xAPI: https://lrs.example/xapi
+    std::string address{};           ///< of its xAPI: https://lrs.example/xapi
     std::string user{}, password{};  ///< HTTP Basic; empty: none
 };
 struct PushedStatements {
-    std::size_t sent = 0;    ///< that it took
-    std::size_t there = 0;   ///< that it had already
+    std::size_t sent = 0;   ///< that it took
+    std::size_t there = 0;  ///< that it had already
 };
 /// All that waits in the outbox, oldest first. `progress`: a file that says how far each record store has it, written
 /// after each piece that one has. Throws core::Error: "platform-silent", "platform-address", "statements-refused" (what

@@ -22,14 +22,10 @@ constexpr const char* kGradeColumns =
     "SELECT g.number, g.assignment, g.person, g.platform, g.subject, g.address, g.body, g.tries, g.made, g.next, "
     "g.sent, g.problem FROM lti_grades g";
 LtiGrade gradeOf(const Statement& row) {
-    return {row.integer(0),
-            {row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)},
-            row.text(6),
-            row.integer(7),
-            row.integer(8),
-            row.integer(9),
-            row.integer(10),
-            row.text(11)};
+    return {row.integer(0),  {row.text(1), row.text(2), row.text(3), row.text(4), row.text(5)},
+            row.text(6),     row.integer(7),
+            row.integer(8),  row.integer(9),
+            row.integer(10), row.text(11)};
 }
 
 }  // namespace
@@ -96,8 +92,8 @@ std::optional<LtiBooks::Begun> LtiBooks::take(const std::string& state, Millisec
     std::optional<Begun> begun;
     Transaction transaction(*state_.database);
     {
-        Statement row = state_.ask("DELETE FROM lti_states WHERE hash = $1 RETURNING platform, nonce_hash, expires",
-                                   sha256(state));
+        Statement row =
+            state_.ask("DELETE FROM lti_states WHERE hash = $1 RETURNING platform, nonce_hash, expires", sha256(state));
         while (row.next())
             if (row.integer(2) > now) begun = Begun{row.text(0), row.text(1)};
     }
@@ -118,7 +114,8 @@ std::optional<Person> LtiBooks::personByExternal(const std::string& external) co
 void LtiBooks::setExternal(const std::string& person, const std::string& external, const Act& act) {
     if (external.size() > 255) throw invalid("external id", external, "255 characters are the most");
     Transaction transaction(*state_.database);
-    if (state_.any("SELECT 1 FROM identities WHERE external = $1 AND external <> '' AND person <> $2", external, person))
+    if (state_.any("SELECT 1 FROM identities WHERE external = $1 AND external <> '' AND person <> $2", external,
+                   person))
         throw duplicate(*state_.database, "external id", external);
     if (!state_.any("UPDATE identities SET external = $1 WHERE person = $2 RETURNING person", external, person))
         throw unknown(*state_.database, "person", person);
@@ -138,8 +135,8 @@ void LtiBooks::set(const LtiLine& l) {
 
 std::vector<LtiLine> LtiBooks::lines() const {
     std::vector<LtiLine> all;
-    Statement rows = state_.ask(
-        "SELECT assignment, person, platform, subject, address FROM lti_lines ORDER BY assignment, person");
+    Statement rows =
+        state_.ask("SELECT assignment, person, platform, subject, address FROM lti_lines ORDER BY assignment, person");
     while (rows.next())
         all.push_back({rows.text(0), rows.text(1), rows.text(2), rows.text(3), rows.text(4)});
     return all;
@@ -176,9 +173,9 @@ bool LtiBooks::queue(const LtiLine& l, const std::string& body, Milliseconds now
     bool isNew = false;
     Transaction transaction(*state_.database);
     {
-        Statement row = state_.ask(
-            "SELECT body FROM lti_grades WHERE assignment = $1 AND person = $2 ORDER BY number DESC LIMIT 1",
-            l.assignment, l.person);
+        Statement row =
+            state_.ask("SELECT body FROM lti_grades WHERE assignment = $1 AND person = $2 ORDER BY number DESC LIMIT 1",
+                       l.assignment, l.person);
         isNew = !row.next() || row.text(0) != body;
     }
     if (isNew) {

@@ -23,9 +23,10 @@ void Retention::setForClass(const std::string& schoolClass, const RetentionRules
     Transaction transaction(*state_.database);
     state_.requireClass(schoolClass);
     state_.run("UPDATE classes SET retention_days = $1 WHERE id = $2", rules.closedDays, schoolClass);
-    state_.run("INSERT INTO retention (scope, days) VALUES ($1, $2) ON CONFLICT (scope) DO UPDATE SET days = "
-               "excluded.days",
-               scopeOf(schoolClass), rules.practiceDays);
+    state_.run(
+        "INSERT INTO retention (scope, days) VALUES ($1, $2) ON CONFLICT (scope) DO UPDATE SET days = "
+        "excluded.days",
+        scopeOf(schoolClass), rules.practiceDays);
     state_.note(act, "set retention", schoolClass,
                 "practice " + std::to_string(rules.practiceDays) + " days, after it was closed " +
                     std::to_string(rules.closedDays) + " days");
@@ -47,9 +48,10 @@ RetentionRules Retention::ofClass(const std::string& schoolClass) const {
 void Retention::setForPersonal(std::int64_t days, const Act& act) {
     requireDays(days);
     Transaction transaction(*state_.database);
-    state_.run("INSERT INTO retention (scope, days) VALUES ($1, $2) ON CONFLICT (scope) DO UPDATE SET days = "
-               "excluded.days",
-               kPersonal, days);
+    state_.run(
+        "INSERT INTO retention (scope, days) VALUES ($1, $2) ON CONFLICT (scope) DO UPDATE SET days = "
+        "excluded.days",
+        kPersonal, days);
     state_.note(act, "set retention", "", "practice of nobody's class " + std::to_string(days) + " days");
     transaction.commit();
 }
@@ -63,11 +65,13 @@ std::vector<Expiring> Retention::expiring(Milliseconds now) const {
     std::vector<Expiring> all;
     // By when it came: a station's clock may be wrong by years.
     Statement rows = state_.ask(
-        "SELECT t.id, t.person, t.assignment, t.finished, CASE WHEN c.closed > 0 AND c.retention_days > 0 AND c.closed + "
+        "SELECT t.id, t.person, t.assignment, t.finished, CASE WHEN c.closed > 0 AND c.retention_days > 0 AND c.closed "
+        "+ "
         "c.retention_days * 86400000 <= CAST($1 AS INT8) THEN 'class closed' WHEN t.assignment = '' THEN 'practice of "
         "nobody''s class' ELSE 'practice of a class' END, coalesce((SELECT sum(f.bytes) FROM files f WHERE f.hash IN "
         "(SELECT x.file FROM attempt_files x WHERE x.attempt = t.id) AND NOT EXISTS (SELECT 1 FROM attempt_files y "
-        "WHERE y.file = f.hash AND y.attempt <> t.id) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = f.hash)), 0) "
+        "WHERE y.file = f.hash AND y.attempt <> t.id) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = f.hash)), "
+        "0) "
         "FROM attempts t LEFT JOIN assignments a ON a.id = t.assignment LEFT JOIN classes c ON c.id = a.class "
         "LEFT JOIN retention r ON r.scope = CASE WHEN t.assignment = '' THEN 'personal' ELSE 'class ' || a.class END "
         "WHERE (c.closed > 0 AND c.retention_days > 0 AND c.closed + c.retention_days * 86400000 <= CAST($1 AS INT8)) "

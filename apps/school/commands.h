@@ -16,6 +16,10 @@ void addPeopleCommands(cli::Command& app);
 void addBackupCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
+/// exam, verify-receipt.
+void addExamCommands(cli::Command& app);
+/// lti, retention, statements.
+void addElsewhereCommands(cli::Command& app);
 /// station: a window's own, fed by it; simulate: many stations and browsers at a server of its own.
 void addLiveCommands(cli::Command& app);
 

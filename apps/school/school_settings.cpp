@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 
@@ -20,6 +21,16 @@ constexpr std::size_t kMostWorkers = 64;
 
 void fill(std::string& value, const std::string& from) {
     if (value.empty()) value = from;
+}
+
+std::vector<std::string> parted(const std::string& text) {
+    std::vector<std::string> all;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        if (end > at) all.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return all;
 }
 
 std::size_t workersIn(const std::string& text, const std::string& where) {
@@ -48,18 +59,27 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.listen, variable("HANDPIECE_SCHOOL_LISTEN"));
     fill(s.certificate, variable("HANDPIECE_SCHOOL_CERTIFICATE"));
     fill(s.key, variable("HANDPIECE_SCHOOL_KEY"));
+    fill(s.address, variable("HANDPIECE_SCHOOL_ADDRESS"));
+    fill(s.signOnSecret, variable("HANDPIECE_SCHOOL_SIGN_ON_SECRET"));
+    fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
+    if (s.signOnProxies.empty()) s.signOnProxies = parted(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXY"));
     if (const std::string workers = variable("HANDPIECE_SCHOOL_WORKERS"); !s.workers && !workers.empty())
         s.workers = workersIn(workers, "HANDPIECE_SCHOOL_WORKERS");
     // The system's file is for those who may read it: a database's password may stand in it.
     if (s.file.empty() && !systemFile.empty() && access(systemFile.c_str(), R_OK) == 0) s.file = systemFile;
     if (!s.file.empty()) {
         const config::Table file = config::Table::read(s.file);
-        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers"});
+        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "address", "sign_on_secret",
+                        "sign_on_header", "sign_on_proxies"});
         fill(s.data, file.text("data").value_or(""));
         fill(s.database, file.text("database").value_or(""));
         fill(s.listen, file.text("listen").value_or(""));
         fill(s.certificate, file.text("certificate").value_or(""));
         fill(s.key, file.text("key").value_or(""));
+        fill(s.address, file.text("address").value_or(""));
+        fill(s.signOnSecret, file.text("sign_on_secret").value_or(""));
+        fill(s.signOnHeader, file.text("sign_on_header").value_or(""));
+        if (s.signOnProxies.empty()) s.signOnProxies = file.texts("sign_on_proxies");
         if (const auto workers = file.integer("workers")) {
             if (*workers < 0 || *workers > static_cast<std::int64_t>(kMostWorkers))
                 file.fail(fmt::format("{} is no number of workers", *workers),
@@ -69,6 +89,7 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     }
     fill(s.data, "school");
     fill(s.listen, "127.0.0.1:8620");
+    fill(s.signOnHeader, "X-Handpiece-User");
     if (!s.workers) s.workers = 1;
     return s;
 }

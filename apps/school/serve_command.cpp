@@ -18,6 +18,7 @@
 #include <thread>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "school/commands.h"
 #include "school/school_settings.h"
 #include "school/server.h"
@@ -59,6 +60,17 @@ void tellManager(const char* state) {
     close(line);
 }
 
+std::string secretIn(const std::string& file) {
+    const std::vector<std::byte> bytes = core::readFile(file, 4096);
+    std::string secret(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    while (!secret.empty() && (secret.back() == '\n' || secret.back() == ' '))
+        secret.pop_back();
+    if (secret.size() < 32)
+        throw core::Error("the proxy's secret is too short", file,
+                          "32 characters or more, by chance: openssl rand -hex 32");
+    return secret;
+}
+
 void serve(const ServeOptions& asked) {
     std::atomic<bool> ended{false};
     std::signal(SIGTERM, [](int) { terminated = true; });
@@ -78,6 +90,14 @@ void serve(const ServeOptions& asked) {
     settings.data = o.data, settings.database = o.database;
     settings.certificate = o.certificate, settings.key = o.key;
     settings.workers = *o.workers;
+    settings.address = o.address;
+    while (settings.address.ends_with('/'))
+        settings.address.pop_back();
+    settings.signOn.proxies = o.signOnProxies, settings.signOn.header = o.signOnHeader;
+    if (!o.signOnSecret.empty()) settings.signOn.secret = secretIn(o.signOnSecret);
+    if (o.signOnProxies.empty() != settings.signOn.secret.empty())
+        throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
+                          "give both --sign-on-proxy and --sign-on-secret, or neither");
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')
@@ -118,6 +138,13 @@ void addServeCommand(cli::Command& app) {
     command.option("--key", o.given.key, "its key (PEM)");
     command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do (1)")
         .check(cli::range(std::size_t{0}, std::size_t{64}));
+    command.option("--address", o.given.address, "as browsers know it, https://school.example: for log-ins by LTI");
+    command
+        .option("--sign-on-proxy", o.given.signOnProxies,
+                "address of a proxy that vouches for who logs in; several times")
+        .takeAll();
+    command.option("--sign-on-secret", o.given.signOnSecret, "file with the secret that it sends");
+    command.option("--sign-on-header", o.given.signOnHeader, "in which it names who logs in (X-Handpiece-User)");
     command.flag("--worker", o.worker, "only work: cut sessions again for the same books");
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
     command.callback([options, command] {

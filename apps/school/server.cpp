@@ -13,6 +13,7 @@
 #include "handpiece/school/people/secret.h"
 #include "school/answers.h"
 #include "school/growing_pool.h"
+#include "school/housekeeper.h"
 #include "school/routes.h"
 #include "school/slow_guard.h"
 #include "school/wire.h"
@@ -32,7 +33,8 @@ constexpr time_t kKeepAliveS = 5;
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
-    for (const auto room : {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, officeRoutes})
+    for (const auto room :
+         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, officeRoutes, examRoutes, signOnRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;
@@ -161,6 +163,7 @@ struct Server::State : Service {
     int port = -1;
     std::unique_ptr<SlowGuard> guard;
     std::vector<std::unique_ptr<Worker>> workers;
+    Housekeeper house{*this};
 };
 
 std::vector<Route> Server::routes() {
@@ -180,7 +183,9 @@ int Server::port() const {
 void Server::run() {
     for (const auto& worker : state_->workers)
         worker->start();
+    if (state_->settings.keepsHouse) state_->house.start();
     state_->http->listen_after_bind();
+    state_->house.stop();
     for (const auto& worker : state_->workers)
         worker->stop();
 }

@@ -15,6 +15,12 @@
 
 namespace handpiece::school_server {
 
+/// Log-ins that a proxy vouches for, which speaks OpenID Connect: at /sign-on, in a header.
+struct SignOn {
+    std::vector<std::string> proxies{};  ///< addresses that are believed; none: nobody is
+    std::string header = "X-Handpiece-User";
+    std::string secret{};  ///< that comes along in X-Handpiece-Secret
+};
 struct Settings {
     std::filesystem::path data;  ///< its folder
     std::string database{};      ///< empty: SQLite in it; else postgresql://...

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,26 +11,17 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/content_files.h"
 #include "school/line.h"
+#include "school/send_file.h"
 
 namespace handpiece::school_station {
 namespace {
 
 namespace fs = std::filesystem;
-using school_wire::Received;
 
 /// What will be refused tomorrow as well.
 bool isFinal(const core::Error& error) {
     constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged", "upload-mismatch"};
     return std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
-}
-
-std::string pieceOf(const fs::path& file, std::uint64_t offset, std::size_t bytes) {
-    std::ifstream in(file, std::ios::binary);
-    std::string piece(bytes, '\0');
-    in.seekg(static_cast<std::streamoff>(offset));
-    if (!in.read(piece.data(), static_cast<std::streamsize>(bytes)))
-        throw core::Error("the recording cannot be read", file.string(), "see whether the disk is all right");
-    return piece;
 }
 
 class Pusher {
@@ -105,19 +95,8 @@ class Pusher {
             sendFile(files[i], p.files[i]);
     }
     void sendFile(const fs::path& file, const std::string& hash) {
-        const std::uint64_t bytes = fs::file_size(file);
-        Received there = school_wire::receivedFrom(line_.get(fmt::format("/api/v1/files/{}?bytes={}", hash, bytes)));
-        if (there.isWhole) return;
-        do {
-            if (there.bytes > bytes) throw core::Error("it has more of a file than there is", enrolment_.server);
-            const std::string piece = pieceOf(
-                file, there.bytes,
-                static_cast<std::size_t>(std::min<std::uint64_t>(bytes - there.bytes, school_wire::kMostPiece)));
-            there = school_wire::receivedFrom(
-                line_.put(fmt::format("/api/v1/files/{}?bytes={}&offset={}", hash, bytes, there.bytes), piece));
-            pushed_.bytes += piece.size();
-        } while (!there.isWhole && there.bytes < bytes);
-        ++pushed_.files;
+        if (const std::uint64_t bytes = school_station::sendFile(line_, file, hash); bytes > 0)
+            pushed_.bytes += bytes, ++pushed_.files;
     }
 
     school::Store& store_;

@@ -57,7 +57,7 @@ std::vector<Entry> stationRoutes(Service* of) {
                      }))
                      continue;
                  for (const school::Assignment& a : open->assignments(one.id))
-                     tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
+                     if (a.kind != "exam") tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
              }
              answer(response, toJson(tasks));
          })},
@@ -66,7 +66,12 @@ std::vector<Entry> stationRoutes(Service* of) {
              school::PushedAttempt pushed = school_wire::attemptFrom(request.body);
              pushed.station = station.id;
              pushed.received = of->clock();
-             const bool isNew = of->books.take()->push(pushed);
+             auto open = of->books.take();
+             if (const auto assignment = open->assignment(pushed.assignment); assignment && assignment->kind == "exam")
+                 throw core::Error("an exam's work is told by the service of its station alone", pushed.assignment,
+                                   "hand it over there: handpiece school exam finish")
+                     .as("books-invalid", {"assignment"});
+             const bool isNew = open->push(pushed);
              if (isNew) ++of->attempts;
              answer(response, "{}", isNew ? 201 : 200);
          })},

@@ -113,6 +113,9 @@ std::string classPage(const Looker& who, const school::ClassPage& of, const Name
         page.paragraph(words()("school.no-students"), Tone::missing);
     else
         page.linkedTable(header, rows, words()("school.class-about"));
+    for (const school::Assignment& assignment : of.assignments)
+        if (assignment.kind == "exam")
+            page.link("/exams/" + assignment.id, words()("school-exam.exam-of", assignment.title));
     return page.text();
 }
 

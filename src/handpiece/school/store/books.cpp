@@ -250,7 +250,9 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
-        for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1"})
+        // And what a learning platform calls them.
+        for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1",
+                                "DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
             state_->run(sql, code);
         state_->note(act, "erase", code);
     }
@@ -404,48 +406,34 @@ ClassPage Books::classPage(const std::string& schoolClass) const {
     return page;
 }
 
-std::int64_t Books::expire(const Act& act) {
-    std::vector<std::string> attempts, orphans;
-    {
-        Transaction transaction(*state_->database);
+std::vector<std::string> Books::State::removeAttempts(const std::vector<std::string>& attempts, const Act& act) {
+    std::vector<std::string> orphans;
+    for (const std::string& id : attempts) {
+        std::vector<std::string> itsFiles;
         {
-            Statement rows = state_->ask(
-                "SELECT t.id FROM classes c JOIN assignments a ON a.class = c.id JOIN attempts t ON t.assignment = "
-                "a.id "
-                "WHERE c.closed > 0 AND c.retention_days > 0 AND c.closed + c.retention_days * 86400000 <= "
-                "CAST($1 AS INT8) ORDER BY t.id",
-                act.at);
+            Statement rows = ask("SELECT file FROM attempt_files WHERE attempt = $1", id);
             while (rows.next())
-                attempts.push_back(rows.text(0));
+                itsFiles.push_back(rows.text(0));
         }
-        for (const std::string& id : attempts) {
-            std::vector<std::string> files;
-            {
-                Statement rows = state_->ask("SELECT file FROM attempt_files WHERE attempt = $1", id);
-                while (rows.next())
-                    files.push_back(rows.text(0));
-            }
-            for (const char* sql :
-                 {"DELETE FROM scores WHERE attempt = $1", "DELETE FROM jobs WHERE attempt = $1",
-                  "DELETE FROM marks WHERE attempt = $1", "DELETE FROM comments WHERE attempt = $1",
-                  "DELETE FROM judgements WHERE attempt = $1", "DELETE FROM shares WHERE attempt = $1",
-                  "DELETE FROM sheets WHERE attempt = $1", "DELETE FROM releases WHERE attempt = $1",
-                  "DELETE FROM calibrations WHERE attempt = $1", "DELETE FROM exemplars WHERE attempt = $1",
-                  "DELETE FROM attempt_files WHERE attempt = $1", "DELETE FROM attempts WHERE id = $1"})
-                state_->run(sql, id);
-            for (const std::string& file : files)
-                if (state_->any("DELETE FROM files WHERE hash = $1 AND NOT EXISTS (SELECT 1 FROM attempt_files f "
-                                "WHERE f.file = files.hash) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = "
-                                "files.hash) RETURNING hash",
-                                file))
-                    orphans.push_back(file);
-            state_->note(act, "expire", id);
-        }
-        transaction.commit();
+        // Of an exam: what its station noted stays as a link of the station's chain, without a person.
+        for (const char* sql :
+             {"DELETE FROM scores WHERE attempt = $1", "DELETE FROM jobs WHERE attempt = $1",
+              "DELETE FROM marks WHERE attempt = $1", "DELETE FROM comments WHERE attempt = $1",
+              "DELETE FROM judgements WHERE attempt = $1", "DELETE FROM shares WHERE attempt = $1",
+              "DELETE FROM sheets WHERE attempt = $1", "DELETE FROM releases WHERE attempt = $1",
+              "DELETE FROM calibrations WHERE attempt = $1", "DELETE FROM exemplars WHERE attempt = $1",
+              "DELETE FROM exam_doubts WHERE sitting = $1", "DELETE FROM exam_decisions WHERE sitting = $1",
+              "DELETE FROM exam_sittings WHERE id = $1", "DELETE FROM attempt_files WHERE attempt = $1",
+              "DELETE FROM attempts WHERE id = $1"})
+            run(sql, id);
+        for (const std::string& file : itsFiles)
+            if (any("DELETE FROM files WHERE hash = $1 AND NOT EXISTS (SELECT 1 FROM attempt_files f WHERE f.file = "
+                    "files.hash) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = files.hash) RETURNING hash",
+                    file))
+                orphans.push_back(file);
+        note(act, "expire", id);
     }
-    for (const std::string& file : orphans)
-        state_->removeFile(file);
-    return static_cast<std::int64_t>(attempts.size());
+    return orphans;
 }
 
 // Exercises.

@@ -72,6 +72,9 @@ struct Books::State {
     bool push(const Mark& mark, const Act& act);
     /// In a transaction that writes: attempts that are whole by now wait to be scored.
     void queueArrived(const std::string& attempt, Milliseconds now);
+    /// In a transaction that writes: they go, with all that hangs on them, each with its line in the audit. Returns the
+    /// files that nobody has any more, to be removed when it is committed.
+    [[nodiscard]] std::vector<std::string> removeAttempts(const std::vector<std::string>& attempts, const Act& act);
     void keepFile(const std::string& hash, Milliseconds now);
     /// Of a file that was deleted from the books: unless it came again in the meantime.
     void removeFile(const std::string& hash);

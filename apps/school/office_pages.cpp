@@ -39,9 +39,6 @@ constexpr std::size_t kMostShown = 500, kAuditLines = 100;
 std::string word(const std::string& id) {
     return words()("school-office." + id);
 }
-school::Act actOf(const Visit& v) {
-    return {v.person.code, v.now};
-}
 /// Without where the books lie; a list's own place is told.
 std::string said(const core::Error& e) {
     if (e.id() == "list-unfit") return e.what();

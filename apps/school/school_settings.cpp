@@ -23,16 +23,6 @@ void fill(std::string& value, const std::string& from) {
     if (value.empty()) value = from;
 }
 
-std::vector<std::string> parted(const std::string& text) {
-    std::vector<std::string> all;
-    for (std::size_t at = 0; at < text.size();) {
-        const std::size_t end = std::min(text.find(',', at), text.size());
-        if (end > at) all.push_back(text.substr(at, end - at));
-        at = end + 1;
-    }
-    return all;
-}
-
 std::size_t workersIn(const std::string& text, const std::string& where) {
     std::size_t count = 0;
     const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), count);
@@ -40,6 +30,16 @@ std::size_t workersIn(const std::string& text, const std::string& where) {
         throw core::Error(fmt::format("\"{}\" is no number of workers", text), where,
                           fmt::format("write 0 to {}", kMostWorkers));
     return count;
+}
+
+std::vector<std::string> partsOf(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        if (end > at) parts.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
 }
 
 }  // namespace
@@ -62,15 +62,15 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.address, variable("HANDPIECE_SCHOOL_ADDRESS"));
     fill(s.signOnSecret, variable("HANDPIECE_SCHOOL_SIGN_ON_SECRET"));
     fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
-    if (s.signOnProxies.empty()) s.signOnProxies = parted(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXY"));
+    if (s.signOnProxies.empty()) s.signOnProxies = partsOf(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXIES"));
     if (const std::string workers = variable("HANDPIECE_SCHOOL_WORKERS"); !s.workers && !workers.empty())
         s.workers = workersIn(workers, "HANDPIECE_SCHOOL_WORKERS");
     // The system's file is for those who may read it: a database's password may stand in it.
     if (s.file.empty() && !systemFile.empty() && access(systemFile.c_str(), R_OK) == 0) s.file = systemFile;
     if (!s.file.empty()) {
         const config::Table file = config::Table::read(s.file);
-        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "address", "sign_on_secret",
-                        "sign_on_header", "sign_on_proxies"});
+        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "address", "sign_on_proxies",
+                        "sign_on_secret", "sign_on_header"});
         fill(s.data, file.text("data").value_or(""));
         fill(s.database, file.text("database").value_or(""));
         fill(s.listen, file.text("listen").value_or(""));

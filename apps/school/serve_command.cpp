@@ -42,6 +42,17 @@ void waitForInterrupt(const std::atomic<bool>& ended) {
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
+std::string secretIn(const std::string& file) {
+    const std::vector<std::byte> bytes = core::readFile(file, 4096);
+    std::string secret(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    while (!secret.empty() && (secret.back() == '\n' || secret.back() == ' '))
+        secret.pop_back();
+    if (secret.size() < 32)
+        throw core::Error("the proxy's secret is too short", file,
+                          "32 characters or more, by chance: openssl rand -hex 32");
+    return secret;
+}
+
 /// To the service manager that started this program, if one did (sd_notify(3)).
 void tellManager(const char* state) {
     const char* const address = std::getenv("NOTIFY_SOCKET");
@@ -58,17 +69,6 @@ void tellManager(const char* state) {
                static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length)) < 0)
         std::fprintf(stderr, "handpiece-school: the service manager does not hear: %s\n", std::strerror(errno));
     close(line);
-}
-
-std::string secretIn(const std::string& file) {
-    const std::vector<std::byte> bytes = core::readFile(file, 4096);
-    std::string secret(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    while (!secret.empty() && (secret.back() == '\n' || secret.back() == ' '))
-        secret.pop_back();
-    if (secret.size() < 32)
-        throw core::Error("the proxy's secret is too short", file,
-                          "32 characters or more, by chance: openssl rand -hex 32");
-    return secret;
 }
 
 void serve(const ServeOptions& asked) {
@@ -98,6 +98,7 @@ void serve(const ServeOptions& asked) {
     if (o.signOnProxies.empty() != settings.signOn.secret.empty())
         throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
                           "give both --sign-on-proxy and --sign-on-secret, or neither");
+    settings.workers = *o.workers;
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')

@@ -34,7 +34,7 @@ constexpr time_t kKeepAliveS = 5;
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
     for (const auto room :
-         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, officeRoutes, examRoutes, signOnRoutes})
+         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes, officeRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;

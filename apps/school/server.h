@@ -30,6 +30,9 @@ struct Settings {
     std::size_t threads = 400;               ///< at most; each serves one connection
     std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off
     std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
+    std::string address{};  ///< as browsers know it, without a slash at its end; empty: no log-in by LTI
+    SignOn signOn{};
+    bool keepsHouse = true;  ///< what is over its time goes, and grades go out
 };
 /// Since 1970, UTC.
 using Clock = std::function<school::Milliseconds()>;

@@ -78,8 +78,12 @@ report::Names namesFor(const Visit& v, const Relation& relation, const std::stri
     return names;
 }
 
+school::Act actOf(const Visit& v) {
+    return {v.person.code, v.now};
+}
+
 void noteLook(const Visit& v, const char* what, const std::string& about, const std::string& detail) {
-    v.books.note({v.person.code, v.now}, what, about, detail);
+    v.books.note(actOf(v), what, about, detail);
 }
 
 Page notYours() {

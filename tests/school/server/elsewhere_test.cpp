@@ -51,7 +51,8 @@ class Platform {
     [[nodiscard]] std::string address() const { return fmt::format("http://127.0.0.1:{}", port_); }
     std::string ask(const std::string& path, const json& body) const {
         httplib::Client http(address());
-        const auto result = http.Post(path, body.is_string() ? body.get<std::string>() : body.dump(), "application/json");
+        const auto result =
+            http.Post(path, body.is_string() ? body.get<std::string>() : body.dump(), "application/json");
         return result ? result->body : std::string();
     }
     [[nodiscard]] json told() const { return json::parse(ask("/told", "{}")); }
@@ -80,8 +81,13 @@ class ElsewhereTest : public SchoolTest {
         LtiBooks lti(open);
         lti.setExternal("s017", "u-17", act);
         lti.setExternal("t1", "sourced-1", act);
-        (void)lti.set({"", "https://platform.example", "client-1", platform_.address() + "/auth",
-                       platform_.address() + "/token", platform_.address() + "/jwks", {"d1", "d2"}},
+        (void)lti.set({"",
+                       "https://platform.example",
+                       "client-1",
+                       platform_.address() + "/auth",
+                       platform_.address() + "/token",
+                       platform_.address() + "/jwks",
+                       {"d1", "d2"}},
                       act);
         now_ = systemClock()();
     }
@@ -90,8 +96,7 @@ class ElsewhereTest : public SchoolTest {
         std::string state, nonce;
     };
     Begun begin(Books& open, Milliseconds now) const {
-        const Beginning beginning =
-            beginLaunch(open, "https://platform.example", "", "hint", "message", kOwn, now);
+        const Beginning beginning = beginLaunch(open, "https://platform.example", "", "hint", "message", kOwn, now);
         httplib::Params asked;
         httplib::detail::parse_query_text(beginning.to.substr(beginning.to.find('?') + 1), asked);
         EXPECT_EQ(asked.find("state")->second, beginning.state);

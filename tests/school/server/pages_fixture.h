@@ -11,29 +11,6 @@
 
 namespace handpiece::school_server {
 
-/// One that a route's pattern fits; `named`: what stands for a group, by its number from 0; else 32 letters a, or the
-/// first of several words.
-inline std::string anAddressOf(const std::string& pattern, const std::function<std::string(std::size_t)>& named = {}) {
-    std::string path;
-    std::size_t group = 0;
-    for (std::size_t at = 0; at < pattern.size();) {
-        if (pattern[at] != '(') {
-            path += pattern[at++];
-            continue;
-        }
-        const std::size_t end = pattern.find(')', at);
-        const std::string inside = pattern.substr(at + 1, end - at - 1);
-        const std::string own = named ? named(group) : std::string();
-        path += !own.empty()                         ? own
-                : inside.find('|') != inside.npos    ? inside.substr(0, inside.find('|'))
-                : inside.find("{64}") != inside.npos ? std::string(64, 'a')
-                                                     : std::string(32, 'a');
-        ++group;
-        at = end + 1;
-    }
-    return path;
-}
-
 class PagesTest : public SchoolTest {
   protected:
     void SetUp() override {

@@ -53,7 +53,7 @@ TEST_F(PagesTest, EachSeesWhatIsTheirs) {
         httplib::Client http(school.address());
         for (const Route& route : Server::routes()) {
             if (route.caller != Caller::person) continue;
-            const std::string path = anAddressOf(route.pattern);
+            const std::string path = pathOf(route.pattern);
             const httplib::Headers headers{{"Cookie", "other=1; handpiece=" + cookie}};
             const auto result =
                 route.method == "GET" ? http.Get(path, headers) : http.Post(path, headers, "", "text/plain");

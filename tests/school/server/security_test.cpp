@@ -24,7 +24,7 @@ class SecurityTest : public PagesTest {
     /// What stands in the place of a group of a pattern: things that are there, another's.
     std::string addressOf(const std::string& pattern) const {
         const auto is = [&](const char* start) { return pattern.starts_with(start); };
-        return anAddressOf(pattern, [&](std::size_t group) -> std::string {
+        return pathOf(pattern, [&](std::size_t group) -> std::string {
             if (group > 0) return {};
             if (is("/people/") || is("/office/people/")) return "s017";
             if (pattern.find("/classes/") != pattern.npos) return "c1";

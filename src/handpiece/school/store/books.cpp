@@ -250,8 +250,8 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
-        // And what a learning platform calls them.
         for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1",
+                                // What a learning platform calls them.
                                 "DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
             state_->run(sql, code);
         state_->note(act, "erase", code);

@@ -228,9 +228,8 @@ std::string inWordsOf(Database::Engine engine, std::string sql) {
     return replaced(replaced(sql, ") STRICT;", ");"), " TEXT", " TEXT COLLATE \"C\"");
 }
 
-/// Of what came after `version`.
-/// Of the versions after `version`, up to `to`.
-std::string guards(Database::Engine engine, std::int64_t version, int to) {
+/// Of what came after `version`, until `to`.
+std::string guards(Database::Engine engine, std::int64_t version, std::int64_t to) {
     std::string sql;
     if (engine == Database::Engine::postgres && version == 0)
         sql =

@@ -2,6 +2,7 @@
 // On the server's machine: lists of people, and what is held of one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -59,6 +60,12 @@ void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, 
     fmt::print("{} codes in {}, for {} days: each sets its own password at /first\n", count, o.codes, o.days);
 }
 
+bool makesAdministrators(const school::Roster& roster) {
+    return std::any_of(roster.people.begin(), roster.people.end(), [](const school::Roster::Person& p) {
+        return p.roles && std::find(p.roles->begin(), p.roles->end(), "administrator") != p.roles->end();
+    });
+}
+
 void importPeople(const PeopleOptions& o) {
     const Act act = actOfServer();
     school::Roster roster = school::readRoster(o.file, school_server::today(act.at));
@@ -71,6 +78,8 @@ void importPeople(const PeopleOptions& o) {
         fmt::print("{}\n", school_server::inWords(change));
     for (const std::string& notice : roster.notices)
         fmt::print("{}\n", notice);
+    if (!o.administrators && makesAdministrators(roster))
+        fmt::print("the list would make administrators, and did not: say --administrators\n");
     fmt::print("{} {}\n", changes.size(), o.isDryRun ? "changes would be made (nothing was)" : "changes");
     if (!o.codes.empty() && !o.isDryRun) writeCodes(books, changes, o);
 }

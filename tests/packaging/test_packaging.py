@@ -97,7 +97,7 @@ class Files(unittest.TestCase):
             with tempfile.TemporaryDirectory() as folder:
                 # As it is, with the program of the build and a user that this machine has.
                 file = pathlib.Path(folder) / "handpiece-school.service"
-                file.write_text(unit.replace("/usr/bin/handpiece-school", str(BUILD / "bin/handpiece-school")).replace("User=handpiece-school", "User=nobody")
+                file.write_text(unit.replace("/usr/bin/handpiece-school", str(BUILD / "bin/handpiece-school")).replace("User=handpiece-school", "User=daemon")
                                 .replace("Documentation=file:///usr/share/doc/handpiece-school/school-office.md", ""))
                 result = subprocess.run(["systemd-analyze", "verify", "--man=no", file], capture_output=True, text=True, check=False)
                 self.assertEqual((result.returncode, result.stderr), (0, ""))

@@ -9,6 +9,7 @@
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
+#include "school/exam_pages.h"
 #include "school/review_shelf.h"
 #include "school/teaching.h"
 #include "school/visit.h"
@@ -58,7 +59,10 @@ Page personOf(const Visit& v, const std::string& code) {
         const Relation relation = relationTo(v, one);
         if (!may(v, Action::seeAttempt, relation)) continue;
         seesAny = true, last = relation;
-        const std::vector<school::Score> scores = v.books.scoresOf(one.attempt.id);
+        std::vector<school::Score> scores = v.books.scoresOf(one.attempt.id);
+        // No machine alone fails a person.
+        if (relation.isOwn && isUndecidedExam(v, one.attempt.id)) scores.clear();
+        if (!scores.empty() && isExam(v, one.attempt.id)) scores.back().passed = "teacher";
         work.emplace_back(std::move(one), scores.empty() ? std::nullopt : std::optional(scores.back()));
     }
     if (!seesAny) return notYours();
@@ -70,6 +74,7 @@ Page attemptOf(const Visit& v, const std::string& id) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (isExam(v, id)) return {303, {}, "/sittings/" + id};
     if (!relation.isOwn) noteLook(v, "attempt seen", attempt->person, id);
     const bool seesMarks = may(v, Action::seeMarks, relation);
     std::vector<school::Mark> marks;
@@ -92,6 +97,7 @@ Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();
     const std::vector<school::Score> scores = v.books.scoresOf(id);
     if (scores.empty() || scores.back().result.empty()) return refused(words()("school.not-there"), 404);
     const school::Score& s = scores.back();
@@ -107,6 +113,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();  // it has the points that were lost
     const bool isWhole = !attempt->files.empty() &&
                          std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
                              return core::isThere(v.books.files().path(file));

@@ -14,6 +14,7 @@
 #include "handpiece/school/people/secret.h"
 #include "school/commands.h"
 #include "school/library.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "school/station.h"
 #include "studies/progress_bar.h"
@@ -26,12 +27,12 @@ using school::Act;
 using school::Books;
 
 struct BooksOptions {
-    std::string data = "school", database, name, code, file, role = "student", person, schoolClass, exercise;
+    std::string data, database, name, code, file, role = "student", person, schoolClass, exercise;
     std::size_t hours = 24, days = 120;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
-    command.option("--data", o.data, "the server's folder").showDefault();
+    command.option("--data", o.data, "the server's folder (school)");
     command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
 }
 /// Who sits at the server's machine.
@@ -40,7 +41,8 @@ Act now() {
 }
 
 void offerCode(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const std::string code = school::newStationCode();
     const Act act = now();
     books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act);
@@ -48,7 +50,8 @@ void offerCode(const BooksOptions& o) {
 }
 
 void addPerson(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     school::Person person;
     person.code = o.code, person.name = o.name, person.roles = {o.role};
     person.login = o.code;
@@ -60,7 +63,8 @@ void addPerson(const BooksOptions& o) {
 
 /// Read from standard input, so that no list of processes and no history has it.
 void setPassword(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const auto person = books.person(o.code);
     if (!person) throw core::Error("there is no such person", o.code, "add them: handpiece school person");
     std::string password;
@@ -72,7 +76,8 @@ void setPassword(const BooksOptions& o) {
 }
 
 void addClass(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const Act act = now();
     school::SchoolClass made;
     made.id = school::newId(), made.name = o.name, made.made = act.at;
@@ -80,12 +85,14 @@ void addClass(const BooksOptions& o) {
     fmt::print("{}\n", made.id);
 }
 void join(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const school::Enrolment one{o.schoolClass, o.person, o.role};
     books.enrol(std::span(&one, 1), now());
 }
 void assign(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const Act act = now();
     const auto pack = books.pack(o.exercise);
     if (!pack) throw core::Error("the school has no such exercise", o.exercise, "add it: handpiece school exercise");
@@ -98,13 +105,15 @@ void assign(const BooksOptions& o) {
 }
 
 void addExercise(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const school_server::AddedExercise added = school_server::addExercise(books, o.file, now());
     fmt::print("{}: exercise {}, rubric {}\n", added.id, added.hash, added.rubric);
 }
 
 void tellResults(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     for (const school::PushedAttempt& one : books.attemptsOf(o.person)) {
         const std::vector<school::Score> scores = books.scoresOf(one.attempt.id);
         if (scores.empty()) {

@@ -55,7 +55,7 @@ class HtmlReport {
     /// Cells "yes" and "no" are coloured.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                std::string_view caption = {});
-    /// As table(), cells as they are.
+    /// As table().
     void linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                      std::string_view caption = {});
     void form(const Form& form);

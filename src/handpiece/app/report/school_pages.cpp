@@ -66,6 +66,7 @@ std::string loginPage(const std::string& login, const std::string& wrong) {
     name.complete = "username", password.complete = "current-password";
     name.isRequired = password.isRequired = true;
     page.form({"/login", {name, password}, {{words()("school.log-in")}}});
+    page.link("/first", words()("school-office.have-code"));
     return page.text();
 }
 
@@ -112,6 +113,9 @@ std::string classPage(const Looker& who, const school::ClassPage& of, const Name
         page.paragraph(words()("school.no-students"), Tone::missing);
     else
         page.linkedTable(header, rows, words()("school.class-about"));
+    for (const school::Assignment& assignment : of.assignments)
+        if (assignment.kind == "exam")
+            page.link("/exams/" + assignment.id, words()("school-exam.exam-of", assignment.title));
     return page.text();
 }
 

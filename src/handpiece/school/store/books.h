@@ -201,10 +201,6 @@ class Books {
     [[nodiscard]] std::vector<SchoolClass> classes() const;
     [[nodiscard]] std::vector<Enrolment> enrolments(const std::string& schoolClass) const;
     [[nodiscard]] ClassPage classPage(const std::string& schoolClass) const;
-    /// Attempts of closed classes whose time is over go, with all that hangs on them and the files that nobody else
-    /// has. Returns how many.
-    std::int64_t expire(const Act& act);
-
     // Exercises. The same again is no error.
     void add(const RubricVersion& rubric, const Act& act);
     void add(const Pack& pack, const Act& act);

@@ -23,9 +23,6 @@ using school::Teaching;
 using Cell = HtmlReport::Cell;
 using Tone = HtmlReport::Tone;
 
-school::Act actOf(const Visit& v) {
-    return {v.person.code, v.now};
-}
 std::string typedOf(const std::optional<double>& value) {
     return value ? fmt::format("{}", *value) : std::string();
 }

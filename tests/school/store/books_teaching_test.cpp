@@ -2,6 +2,7 @@
 // What the books hold of a teacher's work, the same on both databases.
 #include <gmock/gmock.h>
 
+#include "handpiece/school/store/retention.h"
 #include "handpiece/school/store/teaching.h"
 #include "school/store/books_fixture.h"
 #include "support/error_of.h"
@@ -176,7 +177,7 @@ TEST_P(TeachingBooksTest, StandardsAndExemplarsAreKeptAndGoWithTheirAttempts) {
     (void)teaching.save({"a1", "t1", "abcd", id(1), "{}"}, {}, kAdmin);
     teaching.release(std::vector<std::string>{id(1)}, true, kAdmin);
     books->close("c1", kAdmin);
-    EXPECT_EQ(books->expire({"server", kNow + 400 * kDay}), 3);
+    EXPECT_EQ(Retention(*books).expire({"server", kNow + 400 * kDay}), 3);
     EXPECT_THAT(teaching.exemplars("a1"), IsEmpty());
     EXPECT_THAT(teaching.sheets("a1"), IsEmpty());
     EXPECT_THAT(teaching.calibrations("a1"), IsEmpty());

@@ -476,7 +476,7 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
                                ? fmt::format("{}, {}", pointsText(settled.final->points, settled.final->maxPoints),
                                              verdictText(settled.final->verdict))
                                : "\u2013"});
-        row.push_back({released.contains(id) ? words()("school-teaching.yes") : words()("school-teaching.no")});
+        row.push_back({released.contains(id) ? words()("school-teaching.released") : ""});
         settledCount += settled.final ? 1 : 0;
         open += settled.needsAdjudication ? 1 : 0;
         rows.push_back(std::move(row));
@@ -603,8 +603,8 @@ Page agreementOf(const Visit& v, const std::string& assignment) {
         for (const assessment::RaterPair& p : c.pairs) {
             std::string kappa = p.linear  ? estimate(*p.linear)
                                 : p.kappa ? estimate(*p.kappa)
-                                          : "\u2013",
-                        bias = "\u2013", limits = "\u2013";
+                                          : "",
+                        bias = "", limits = "";
             if (p.blandAltman && p.blandAltman->bias) bias = fmt::format("{:+.2f}", *p.blandAltman->bias);
             if (p.blandAltman && p.blandAltman->low)
                 limits = fmt::format("{:.2f} \u2013 {:.2f}", *p.blandAltman->low, *p.blandAltman->high);

@@ -43,7 +43,8 @@ std::map<Key, Group> groupsOf(const std::vector<Outcome>& outcomes) {
         if (!one.score || one.score->state != "proven" || !(one.score->maxScore > 0.0)) continue;
         const school::Attempt& a = one.pushed.attempt;
         Group& group = groups[{a.exerciseHash, one.score->rubric, a.device, a.motionScale}];
-        group.exercise = a.exercise, group.device = a.device;
+        group.exercise = a.exercise;
+        group.device = a.device.empty() ? words()("assessment.not-known") : a.device;
         group.percents[one.pushed.person].push_back(100.0 * one.score->score / one.score->maxScore);
     }
     return groups;

@@ -225,6 +225,7 @@ std::optional<school::RubricVersion> newestOf(const Teaching& teaching, const st
 }
 
 std::string scoreText(const school::Score& score) {
+    if (score.state == "refused") return words()("school.refused");
     return score.maxScore > 0.0 ? fmt::format("{:.1f} / {:.1f}", score.score, score.maxScore)
                                 : words()("school.no-score");
 }

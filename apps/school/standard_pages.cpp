@@ -83,10 +83,10 @@ std::vector<standard::RatedWork> ratedOf(const Teaching& teaching, const Assigne
 }
 
 std::string percentText(const std::optional<double>& value) {
-    return value ? fmt::format("{:.1f} %", *value) : "\u2013";
+    return value ? fmt::format("{:.1f} %", *value) : "";
 }
 std::string intervalText(const std::optional<agreement::Interval>& interval) {
-    return interval ? fmt::format("{:.1f} \u2013 {:.1f} %", interval->low, interval->high) : "\u2013";
+    return interval ? fmt::format("{:.1f} \u2013 {:.1f} %", interval->low, interval->high) : "";
 }
 
 report::Form estimateForm(const Visit& v, const Assigned& of, std::int64_t round, const Fields& typed,

@@ -27,7 +27,6 @@ using school::Teaching;
 using Cell = HtmlReport::Cell;
 using Tone = HtmlReport::Tone;
 
-
 /// "2026-11-26T18:05" as a browser sends it, UTC.
 std::optional<Milliseconds> momentIn(const std::string& typed) {
     int part[5] = {};

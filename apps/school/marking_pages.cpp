@@ -271,9 +271,8 @@ ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt
 Page markingOf(const Visit& v) {
     const std::vector<school::Role> roles = rolesOf(v.person);
     // Who may mark in some class, also where there is none yet.
-    if (std::none_of(roles.begin(), roles.end(), [](school::Role role) {
-            return school::reachOf(role, Action::markBlind) != school::Reach::none;
-        }))
+    if (std::none_of(roles.begin(), roles.end(),
+                     [](school::Role role) { return school::reachOf(role, Action::markBlind) != school::Reach::none; }))
         return notYours();
     HtmlReport page = report::sitePage(words()("school-teaching.marking"), lookerOf(v), "/marking");
     bool isAny = false;

@@ -93,7 +93,7 @@ class SchoolWindowTest : public PracticeTest {
 
 TEST_F(SchoolWindowTest, WorkIsWatchedAndArrivesByItself) {
     const fs::path given = makeExercise("one", false);
-    makeExercise("two", false, {"undo"});
+    makeExercise("two", false, {}, [](tasks::Task& task) { task.voxelMm = 0.125; });
     enrol(given);
     startWithTooth();
     ASSERT_TRUE(waitFor([this] { return feature().link().standing().isConnected; })) << note().toStdString();

@@ -7,6 +7,9 @@
 
 namespace handpiece::school_server {
 
+/// The window's.
+extern const char* const kIcon;
+
 using httplib::Request;
 using httplib::Response;
 
@@ -15,6 +18,11 @@ std::vector<Entry> generalRoutes(Service* of) {
         {"GET", "/healthz", Handler([of](const Request&, Response& response) {
              (void)of->books.take()->progress("arrival");
              response.set_content("well\n", "text/plain");
+         })},
+        // Browsers ask for it by themselves.
+        {"GET", "/favicon.ico", Handler([](const Request&, Response& response) {
+             response.set_header("Cache-Control", "max-age=86400");
+             response.set_content(kIcon, "image/svg+xml");
          })},
         {"GET", "/metrics", Handler([of](const Request&, Response& response) {
              const school::Progress work = of->books.take()->progress("arrival");

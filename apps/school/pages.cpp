@@ -9,7 +9,9 @@
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
+#include "school/exam_pages.h"
 #include "school/review_shelf.h"
+#include "school/teaching.h"
 #include "school/visit.h"
 
 namespace handpiece::school_server {
@@ -38,7 +40,10 @@ Page classOf(const Visit& v, const std::string& id) {
         for (const school::Person& student : page.students)
             names[student.code] = student.name;
     noteLook(v, "class seen", "", id);
-    return {200, report::classPage(lookerOf(v), page, names)};
+    std::vector<report::HtmlReport::Cell> rooms;
+    if (may(v, Action::markBlind, relation))
+        rooms.push_back({words()("school-teaching.marking"), "/classes/" + id + "/marking"});
+    return {200, report::classPage(lookerOf(v), page, names, rooms)};
 }
 
 Page personOf(const Visit& v, const std::string& code) {
@@ -51,7 +56,10 @@ Page personOf(const Visit& v, const std::string& code) {
         const Relation relation = relationTo(v, one);
         if (!may(v, Action::seeAttempt, relation)) continue;
         seesAny = true, last = relation;
-        const std::vector<school::Score> scores = v.books.scoresOf(one.attempt.id);
+        std::vector<school::Score> scores = v.books.scoresOf(one.attempt.id);
+        // No machine alone fails a person.
+        if (relation.isOwn && isUndecidedExam(v, one.attempt.id)) scores.clear();
+        if (!scores.empty() && isExam(v, one.attempt.id)) scores.back().passed = "teacher";
         work.emplace_back(std::move(one), scores.empty() ? std::nullopt : std::optional(scores.back()));
     }
     if (!seesAny) return notYours();
@@ -63,20 +71,30 @@ Page attemptOf(const Visit& v, const std::string& id) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (isExam(v, id)) return {303, {}, "/sittings/" + id};
     if (!relation.isOwn) noteLook(v, "attempt seen", attempt->person, id);
     const bool seesMarks = may(v, Action::seeMarks, relation);
-    return {200,
-            report::attemptPage(lookerOf(v), *attempt, namesFor(v, relation, attempt->person), v.books.scoresOf(id),
-                                seesMarks ? v.books.marksOf(id) : std::vector<school::Mark>{},
-                                seesMarks ? v.books.commentsOn(id) : std::vector<school::Comment>{}),
-            {},
-            {}};
+    std::vector<school::Mark> marks;
+    std::vector<school::Comment> comments;
+    if (seesMarks) comments = v.books.commentsOn(id);
+    if (relation.isOwn) {
+        // Their own once they are released.
+        ReleasedMarks released = releasedMarks(v, *attempt);
+        marks = std::move(released.marks);
+        for (school::Comment& one : released.comments)
+            comments.push_back(std::move(one));
+    } else if (seesMarks && !marksBlindStill(v, attempt->assignment)) {
+        marks = v.books.marksOf(id);
+    }
+    return {200, report::attemptPage(lookerOf(v), *attempt, namesFor(v, relation, attempt->person),
+                                     v.books.scoresOf(id), marks, comments)};
 }
 
 Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();
     const std::vector<school::Score> scores = v.books.scoresOf(id);
     if (scores.empty() || scores.back().result.empty()) return refused(words()("school.not-there"), 404);
     const school::Score& s = scores.back();
@@ -92,6 +110,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();  // it has the points that were lost
     const bool isWhole = !attempt->files.empty() &&
                          std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
                              return core::isThere(v.books.files().path(file));

@@ -31,6 +31,10 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> generalRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> stationRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> examRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> signOnRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 
 }  // namespace handpiece::school_server

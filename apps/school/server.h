@@ -4,6 +4,7 @@
 /// A school's server: what stations push goes into its books, is cut again, and scored. The one place that speaks HTTP.
 /// docs/school.md.
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -14,14 +15,24 @@
 
 namespace handpiece::school_server {
 
+/// Log-ins that a proxy vouches for, which speaks OpenID Connect: at /sign-on, in a header.
+struct SignOn {
+    std::vector<std::string> proxies{};  ///< addresses that are believed; none: nobody is
+    std::string header = "X-Handpiece-User";
+    std::string secret{};  ///< that comes along in X-Handpiece-Secret
+};
 struct Settings {
     std::filesystem::path data;  ///< its folder
     std::string database{};      ///< empty: SQLite in it; else postgresql://...
     std::string host = "127.0.0.1";
-    int port = 8620;                   ///< 0: any that is free
-    std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
-    std::size_t threads = 128;         ///< each serves one connection, also while it waits for the next question
-    std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
+    int port = 8620;                         ///< 0: any that is free
+    std::string certificate{}, key{};        ///< files (PEM) for TLS of its own; both or neither
+    std::size_t threads = 400;               ///< at most; each serves one connection
+    std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off
+    std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
+    std::string address{};  ///< as browsers know it, without a slash at its end; empty: no log-in by LTI
+    SignOn signOn{};
+    bool keepsHouse = true;  ///< what is over its time goes, and grades go out
 };
 /// Since 1970, UTC.
 using Clock = std::function<school::Milliseconds()>;

@@ -10,6 +10,7 @@
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
 #include "school/live_board.h"
+#include "school/picture_shelf.h"
 #include "school/review_shelf.h"
 #include "school/server.h"
 #include "school/task_shelf.h"
@@ -28,6 +29,7 @@ struct Service {
     TaskShelf tasks;
     LiveBoard live;
     ReviewShelf reviews;
+    PictureShelf pictures;
     std::mutex guessing;
     school::Throttle throttle;  ///< guarded by `guessing`
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -12,26 +11,17 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/content_files.h"
 #include "school/line.h"
+#include "school/send_file.h"
 
 namespace handpiece::school_station {
 namespace {
 
 namespace fs = std::filesystem;
-using school_wire::Received;
 
 /// What will be refused tomorrow as well.
 bool isFinal(const core::Error& error) {
     constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged", "upload-mismatch"};
     return std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
-}
-
-std::string pieceOf(const fs::path& file, std::uint64_t offset, std::size_t bytes) {
-    std::ifstream in(file, std::ios::binary);
-    std::string piece(bytes, '\0');
-    in.seekg(static_cast<std::streamoff>(offset));
-    if (!in.read(piece.data(), static_cast<std::streamsize>(bytes)))
-        throw core::Error("the recording cannot be read", file.string(), "see whether the disk is all right");
-    return piece;
 }
 
 class Pusher {
@@ -44,6 +34,13 @@ class Pusher {
           line_(enrolment.server, enrolment.key) {}
 
     Pushed run(const core::Progress& progress) {
+        // Books that were restored do not have what came after the backup: all of it once more, which is no error.
+        const school_wire::Status there = school_wire::statusFrom(line_.get("/api/v1/status"));
+        if (there.books != enrolment_.books) {
+            if (!enrolment_.books.empty()) enrolment_.sent = 0;
+            enrolment_.books = there.books;
+            writeEnrolment(enrolment_, file_);
+        }
         const std::size_t all = waitingIn(store_, enrolment_);
         std::size_t done = 0;
         for (auto some = store_.outbox(enrolment_.sent); !some.empty(); some = store_.outbox(enrolment_.sent))
@@ -98,19 +95,8 @@ class Pusher {
             sendFile(files[i], p.files[i]);
     }
     void sendFile(const fs::path& file, const std::string& hash) {
-        const std::uint64_t bytes = fs::file_size(file);
-        Received there = school_wire::receivedFrom(line_.get(fmt::format("/api/v1/files/{}?bytes={}", hash, bytes)));
-        if (there.isWhole) return;
-        do {
-            if (there.bytes > bytes) throw core::Error("it has more of a file than there is", enrolment_.server);
-            const std::string piece = pieceOf(
-                file, there.bytes,
-                static_cast<std::size_t>(std::min<std::uint64_t>(bytes - there.bytes, school_wire::kMostPiece)));
-            there = school_wire::receivedFrom(
-                line_.put(fmt::format("/api/v1/files/{}?bytes={}&offset={}", hash, bytes, there.bytes), piece));
-            pushed_.bytes += piece.size();
-        } while (!there.isWhole && there.bytes < bytes);
-        ++pushed_.files;
+        if (const std::uint64_t bytes = school_station::sendFile(line_, file, hash); bytes > 0)
+            pushed_.bytes += bytes, ++pushed_.files;
     }
 
     school::Store& store_;
@@ -134,7 +120,8 @@ Enrolment readEnrolment(const fs::path& file) {
     try {
         const auto json = nlohmann::json::parse(reinterpret_cast<const char*>(bytes.data()),
                                                 reinterpret_cast<const char*>(bytes.data()) + bytes.size());
-        return {json.at("server"), json.at("station"), json.at("key"), json.at("person"), json.at("sent")};
+        return {json.at("server"), json.at("station"), json.at("key"),
+                json.at("person"), json.at("sent"),    json.value("books", "")};
     } catch (const nlohmann::json::exception& e) {
         throw core::Error(fmt::format("the enrolment cannot be read: {}", e.what()), file.string(),
                           "enrol the station anew; its results stay");
@@ -142,11 +129,10 @@ Enrolment readEnrolment(const fs::path& file) {
 }
 
 void writeEnrolment(const Enrolment& e, const fs::path& file) {
-    const std::string text =
-        nlohmann::ordered_json{
-            {"server", e.server}, {"station", e.station}, {"key", e.key}, {"person", e.person}, {"sent", e.sent}}
-            .dump(1) +
-        "\n";
+    const std::string text = nlohmann::ordered_json{{"server", e.server}, {"station", e.station}, {"key", e.key},
+                                                    {"person", e.person}, {"sent", e.sent},       {"books", e.books}}
+                                 .dump(1) +
+                             "\n";
     core::writeFile(file, text, {.ownerOnly = true});
 }
 

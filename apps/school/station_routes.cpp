@@ -6,6 +6,7 @@
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/books_accounts.h"
 #include "school/answers.h"
 #include "school/routes.h"
 #include "school/wire.h"
@@ -34,8 +35,13 @@ std::vector<Entry> stationRoutes(Service* of) {
          })},
         {"GET", "/api/v1/status",
          StationHandler([of](const Request&, Response& response, const school::Station& station) {
-             school_wire::Status status{HANDPIECE_VERSION, school_wire::kProtocol, core::kEngineRevision, station.id,
-                                        of->books.take()->missingFiles(station.id)};
+             const auto open = of->books.take();
+             school_wire::Status status{HANDPIECE_VERSION,
+                                        school_wire::kProtocol,
+                                        core::kEngineRevision,
+                                        station.id,
+                                        school::BooksAccounts(*open).incarnation(),
+                                        open->missingFiles(station.id)};
              if (status.missing.size() > 200) status.missing.resize(200);
              answer(response, toJson(status));
          })},
@@ -51,7 +57,7 @@ std::vector<Entry> stationRoutes(Service* of) {
                      }))
                      continue;
                  for (const school::Assignment& a : open->assignments(one.id))
-                     tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
+                     if (a.kind != "exam") tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
              }
              answer(response, toJson(tasks));
          })},
@@ -60,7 +66,12 @@ std::vector<Entry> stationRoutes(Service* of) {
              school::PushedAttempt pushed = school_wire::attemptFrom(request.body);
              pushed.station = station.id;
              pushed.received = of->clock();
-             const bool isNew = of->books.take()->push(pushed);
+             auto open = of->books.take();
+             if (const auto assignment = open->assignment(pushed.assignment); assignment && assignment->kind == "exam")
+                 throw core::Error("an exam's work is told by the service of its station alone", pushed.assignment,
+                                   "hand it over there: handpiece school exam finish")
+                     .as("books-invalid", {"assignment"});
+             const bool isNew = open->push(pushed);
              if (isNew) ++of->attempts;
              answer(response, "{}", isNew ? 201 : 200);
          })},

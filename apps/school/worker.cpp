@@ -9,6 +9,7 @@
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
+#include "school/exam_arrival.h"
 
 namespace handpiece::school_server {
 namespace {
@@ -99,7 +100,9 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
         }
         return true;
     };
-    return proving::prove(*attempt, sessions, *task, rubric, progress);
+    school::Score score = proving::prove(*attempt, sessions, *task, rubric, progress);
+    checkExam(books, *attempt, sessions, clock_());
+    return score;
 }
 
 }  // namespace handpiece::school_server

@@ -11,7 +11,7 @@ import { chunkCounts, chunksOf, meshOf } from "./surface.js";
  * @typedef {import("./review.js").Review} Review
  * @typedef {{targetMm: Vec3, yawDeg: number, pitchDeg: number, distanceMm: number}} Camera yaw about the tooth's axis, 0 from mesial
  * @typedef {{normal: Vec3, offsetMm: number}} Plane what lies beyond it is cut off
- * @typedef {{camera: Camera, plane: Plane | null, deviation: boolean, bur: boolean, timeS: number}} Look
+ * @typedef {{camera: Camera, plane: Plane | null, deviation: boolean, bur: boolean, around: "shown" | "faint" | "hidden", timeS: number}} Look
  */
 
 const kTissues = 32;
@@ -42,7 +42,9 @@ precision highp float;
 precision highp sampler3D;
 precision highp usampler3D;
 in vec3 gridPlace, worldPlace, worldNormal;
-uniform int what;  // 0 tooth, 1 bur, 2 face of a section
+uniform int what;  // 0 tooth, 1 bur, 2 face of a section, 3 around the tooth
+uniform vec3 own;  // colour of 3
+uniform bool isFaint;  // of 3: every other point alone
 uniform bool isCut, inDeviation;
 uniform vec4 plane;  // of the world [mm]
 uniform vec3 eye;
@@ -89,6 +91,9 @@ void main() {
     vec3 base;
     if (what == 1) {
         base = vec3(0.62, 0.65, 0.70);
+    } else if (what == 3) {
+        if (isFaint && (int(gl_FragCoord.x) + int(gl_FragCoord.y)) % 2 == 0) discard;
+        base = own;
     } else if (what == 2) {
         float inside = at(distances, gridPlace);
         if (inside > 0.0) discard;
@@ -196,10 +201,12 @@ export class ToothPicture {
         this.program = this.linked_();
         /** @type {Record<string, WebGLUniformLocation | null>} */
         this.at = {};
-        for (const name of ["model", "camera", "what", "isCut", "inDeviation", "plane", "eye", "nodes", "distances", "tissues", "ideal", "scale", "colours"])
+        for (const name of ["model", "camera", "what", "isCut", "inDeviation", "plane", "eye", "nodes", "distances", "tissues", "ideal", "scale", "colours", "own", "isFaint"])
             this.at[name] = gl.getUniformLocation(this.program, name);
         /** @type {Map<number, Drawn>} */
         this.chunks = new Map();
+        /** @type {{drawn: Drawn, colour: number[]}[] | null} made when it is first seen */
+        this.around = null;
         /** Chunks to be made anew, bricks that the section has yet to hear of. */
         this.stale = new Set(Array(chunkCounts(review.text.grid.nodes).reduce((a, b) => a * b)).keys());
         /** @type {Set<number>} */
@@ -382,6 +389,16 @@ export class ToothPicture {
             gl.uniform1i(at.what, 2);
             this.show_(face);
             this.dropped_(face);
+        }
+        if (look.around !== "hidden") {
+            gl.uniform1i(at.what, 3);
+            gl.uniform1i(at.isFaint, Number(look.around === "faint"));
+            gl.uniformMatrix4fv(at.model, false, [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]);
+            this.around ??= review.around.map((part) => ({ drawn: this.uploaded_(part.places, part.normals, part.triangles), colour: shares(part.colour) }));
+            for (const { drawn, colour } of this.around) {
+                gl.uniform3fv(at.own, colour);
+                this.show_(drawn);
+            }
         }
         if (look.bur) {
             const { placeMm: p, turn: [w, x, y, z] } = review.poseAt(look.timeS);

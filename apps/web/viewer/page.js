@@ -59,6 +59,7 @@ export class ReviewPage {
         this.isPlaying = false;
         this.isDeviation = false;
         this.isBur = true;
+        this.isAround = true;
         /** @type {{axis: string, offset: number} | null} */
         this.section = null;
         /** @type {Vec3 | null} */
@@ -304,15 +305,20 @@ export class ReviewPage {
                 }
                 this.ask();
             }));
-        const bur = element("input", { type: "checkbox" });
-        bur.checked = true;
-        bur.addEventListener("change", () => {
-            this.isBur = bur.checked;
-            this.ask();
-        });
+        /** @param {string} label @param {(isOn: boolean) => void} set */
+        const shown = (label, set) => {
+            const box = element("input", { type: "checkbox" });
+            box.checked = true;
+            box.addEventListener("change", () => {
+                set(box.checked);
+                this.ask();
+            });
+            return element("label", {}, box, label);
+        };
+        const bur = shown(words.bur, (isOn) => (this.isBur = isOn)), around = shown(words.around, (isOn) => (this.isAround = isOn));
         this.panel = element("div", { class: "review-panel" },
             group(words.views, ...views), ...(review.ideal ? [group(words.colours, ...colours)] : []), group(words.section, ...sections, offset),
-            element("label", {}, bur, words.bur), element("p", { id: "review-help", class: "review-note" }, words.help));
+            bur, ...(review.around.length ? [around] : []), element("p", { id: "review-help", class: "review-note" }, words.help));
         if (!this.picture) this.panel.hidden = true;
         this.legendOf_();
     }
@@ -531,7 +537,7 @@ export class ReviewPage {
         const { canvas } = this, scale = Math.min(window.devicePixelRatio || 1, 2);
         const width = Math.max(1, Math.round(canvas.clientWidth * scale)), height = Math.max(1, Math.round(canvas.clientHeight * scale));
         if (canvas.width !== width || canvas.height !== height) [canvas.width, canvas.height] = [width, height];
-        this.picture.draw({ camera: this.camera, plane: this.plane(), deviation: this.isDeviation, bur: this.isBur, timeS: this.timeS });
+        this.picture.draw({ camera: this.camera, plane: this.plane(), deviation: this.isDeviation, bur: this.isBur, around: !this.isAround ? "hidden" : this.markMm ? "faint" : "shown", timeS: this.timeS });
         const at = this.markMm && projected(matrixOf(this.camera, width / height), this.markMm);
         this.mark.hidden = !at;
         if (at) {

@@ -21,6 +21,7 @@
  * @property {string[]} notes what is not as it was
  * @property {{originMm: Vec3, voxelMm: number, nodes: Vec3, bricks: Vec3, brickEdge: number, stepsAVoxel: number}} grid
  * @property {Tissue[]} tissues
+ * @property {{lowMm: Vec3, stepMm: number, parts: {name: string, colour: string, vertices: number, triangles: number}[]}} around adjacent teeth and gingiva, as they were before
  * @property {Bur[]} burs
  * @property {[number, number][]} strokes
  * @property {Moment[]} moments
@@ -34,7 +35,7 @@
 
 /** @typedef {{placeMm: Vec3, turn: [number, number, number, number], tipDepthMm: number}} Pose turn: w x y z */
 
-const kVersion = 1;
+const kVersion = 2;
 /** Steps of the numbers of 16 bits. */
 const kPlaceStepMm = 0.002, kTurnStep = 1 / 32767, kForceStepN = 0.001, kDepthStepMm = 0.001;
 /** A distance of zero; more is outside. */
@@ -94,6 +95,36 @@ function rowsOf(bytes, count, rows) {
 }
 
 /**
+ * What stands around the tooth, each part with the normals of its vertices.
+ * @param {ReviewText} text @param {Uint8Array} bytes
+ */
+function aroundOf(text, bytes) {
+    const { lowMm, stepMm, parts } = text.around;
+    let at = 0;
+    /** @param {number} count */
+    const threes = (count) => {
+        const rows = rowsOf(bytes.subarray(at, at + 6 * count), count, 3);
+        at += 6 * count;
+        return rows;
+    };
+    return parts.map((part) => {
+        const [x, y, z] = threes(part.vertices), corners = threes(part.triangles);
+        const places = new Float32Array(3 * part.vertices), normals = new Float32Array(3 * part.vertices), triangles = new Uint16Array(3 * part.triangles);
+        for (let i = 0; i < part.vertices; ++i) places.set([x, y, z].map((row, k) => lowMm[k] + stepMm * (row[i] & 65535)), 3 * i);
+        for (let i = 0; i < part.triangles; ++i) {
+            const [a, b, c] = corners.map((row) => row[i] & 65535);
+            triangles.set([a, b, c], 3 * i);
+            const u = [0, 1, 2].map((k) => places[3 * b + k] - places[3 * a + k]), v = [0, 1, 2].map((k) => places[3 * c + k] - places[3 * a + k]);
+            for (let k = 0; k < 3; ++k) {
+                const n = u[(k + 1) % 3] * v[(k + 2) % 3] - u[(k + 2) % 3] * v[(k + 1) % 3];
+                for (const corner of [a, b, c]) normals[3 * corner + k] += n;
+            }
+        }
+        return { colour: part.colour, places, normals, triangles };
+    });
+}
+
+/**
  * The last index whose time is not after `timeS`; 0 before all.
  * @param {ArrayLike<number>} times @param {number} timeS
  */
@@ -131,6 +162,7 @@ export class Review {
         this.ideal = text.deviation ? sumUp(sections.ideal, nodes) : null;
         if (this.ideal && text.deviation)
             for (let i = 0; i < this.ideal.length; ++i) this.ideal[i] = (this.ideal[i] + text.deviation.whole[this.uncut[i]]) & 255;
+        this.around = aroundOf(text, sections.around);
         this.changes = sections.changes;
         this.bricks = new Uint32Array(sections.bricks.length / 3);
         /** By key: its first brick. */

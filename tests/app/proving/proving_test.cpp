@@ -173,12 +173,15 @@ TEST_F(Proving, EasierConditionsAreTold) {
     s = honest();
     s.bur = std::make_shared<const instrument::Bur>("round:1.0x0.9", simulation::burOf("round:1.2x1.1")->profile());
     EXPECT_THAT(refused("false-bur.h5", s), HasSubstr("had another shape"));
-    // One whose name is a file that lies on the server's machine: it is not opened.
+    // One whose name is a file that lies where the server runs: it is not opened.
     const test::TemporaryFolder folder;
-    const std::string file = (folder.path() / "bur.stl").string();
-    geometry::writeStl(file, simulation::burOf("round:1.2x1.1")->mesh());
-    s.bur = std::make_shared<const instrument::Bur>(file, simulation::burOf("round:1.2x1.1")->profile());
-    EXPECT_THAT(refused("file-bur.h5", s), HasSubstr("is not in the catalogue"));
+    const fs::path before = fs::current_path();
+    fs::current_path(folder.path());
+    geometry::writeStl("bur.stl", simulation::burOf("round:1.2x1.1")->mesh());
+    ASSERT_NO_THROW((void)instrument::makeInstrument("bur.stl"));
+    s.bur = std::make_shared<const instrument::Bur>("bur.stl", simulation::burOf("round:1.2x1.1")->profile());
+    EXPECT_THAT(refused("file-bur.h5", s), HasSubstr("bur.stl is not in the catalogue"));
+    fs::current_path(before);
     s = honest();
     s.cuttingParameters.cutting *= 2.0;
     EXPECT_THAT(refused("sharp.h5", s), HasSubstr("cut otherwise"));

@@ -48,7 +48,7 @@ TEST(HtmlReport, NumbersStandRightAndSentencesDoNot) {
     page.table({"what", "how much"}, {{"a", "1.5 mm"}, {"b", "2 mm"}});
     page.table({"what", "why"}, {{"a", "10 Hz are the least that the maker of the device names"}, {"b", "none"}});
     const std::string text = page.text();
-    EXPECT_NE(text.find("<th class=\"n\">how much</th>"), std::string::npos);
+    EXPECT_NE(text.find("<th scope=\"col\" class=\"n\">how much</th>"), std::string::npos);
     EXPECT_NE(text.find("<td class=\"n\">1.5 mm</td>"), std::string::npos);
     EXPECT_NE(text.find("<td>10 Hz are"), std::string::npos);
     EXPECT_NE(text.find("<td>none</td>"), std::string::npos);

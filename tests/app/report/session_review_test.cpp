@@ -15,6 +15,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/brick_index.h"
 #include "handpiece/model/tooth/state_file.h"
+#include "support/closed_meshes.h"
 
 namespace handpiece::report {
 namespace {
@@ -278,6 +279,80 @@ TEST(SessionReview, APageWithoutOneRunsNoScript) {
     HtmlReport page("plain");
     EXPECT_NE(page.text().find("default-src 'none'"), std::string::npos);
     EXPECT_EQ(page.text().find("script"), std::string::npos);
+}
+
+/// Rows of three numbers, as differences, low bytes then high ones.
+std::vector<std::array<std::uint32_t, 3>> threesOf(const std::vector<std::uint8_t>& bytes, std::size_t& at,
+                                                   std::size_t count) {
+    std::vector<std::array<std::uint32_t, 3>> threes(count);
+    for (std::size_t k = 0; k < 3; ++k, at += 2 * count)
+        for (std::size_t i = 0, sum = 0; i < count; ++i) {
+            sum = (sum + bytes[at + i] + 256u * bytes[at + count + i]) % 65536u;
+            threes[i][k] = static_cast<std::uint32_t>(sum);
+        }
+    return threes;
+}
+
+TEST(SessionReview, ShowsWhatStandsNearAsItIs) {
+    cases::Case toothCase = simulation::blockCase();
+    const core::Vec3 centre(5.0, 0.0, -1.0);
+    const auto seen = [](const char* name, geometry::TriangleMesh mesh) {
+        cases::Part part;
+        part.name = name, part.tissue = cases::Tissue::gum, part.mesh = std::move(mesh);
+        return part;
+    };
+    toothCase.scenery = {seen("far", test::sphereMesh(3, 2.0, {30.0, 0.0, 0.0})),
+                         seen("near", test::sphereMesh(5, 2.0, centre)),
+                         seen("reaching", test::sphereMesh(5, 6.0, {-9.0, 0.0, -1.0}))};
+    const test::TemporaryFolder folder;
+    const simulation::SimulationSetup station =
+        simulation::makeSimulation(toothCase, simulation::blockSettings(), false);
+    simulation::LiveSessionSettings live;
+    live.sessionFile = folder.path() / "one.h5";
+    const auto lead = std::make_shared<simulation::Lead>();
+    simulation::LiveSession sitting(station, toothCase, simulation::handOf(simulation::twoHoles(), lead), live,
+                                    nullptr);
+    ASSERT_TRUE(simulation::leadTo(sitting, *lead, 0.8));
+    sitting.stop();
+
+    SessionPlayer player(live.sessionFile, {false, false, {}});
+    ReviewGatherer gatherer;
+    gatherer.follow(player);
+    (void)player.compareAll({}, {ReviewGatherer::stepS(), [&] { gatherer.look(); }});
+    Unpacked page(gatherer.review("around"));
+    const nlohmann::json& around = page.text["around"];
+    ASSERT_EQ(around["parts"].size(), 2u);
+    EXPECT_EQ(around["parts"][0]["name"], "near");
+    const std::vector<std::uint8_t>& bytes = page.sections["around"];
+    std::size_t at = 0;
+    std::vector<std::vector<core::Vec3>> placesMm;
+    std::vector<double> volumesMm3;
+    for (const nlohmann::json& part : around["parts"]) {
+        placesMm.emplace_back();
+        for (const auto& three : threesOf(bytes, at, part["vertices"])) {
+            core::Vec3 mm;
+            for (std::size_t k = 0; k < 3; ++k)
+                mm[static_cast<Eigen::Index>(k)] =
+                    around["lowMm"][k].get<double>() + around["stepMm"].get<double>() * three[k];
+            placesMm.back().push_back(mm);
+        }
+        double volume = 0.0;
+        for (const auto& t : threesOf(bytes, at, part["triangles"]))
+            volume += placesMm.back().at(t[0]).dot(placesMm.back().at(t[1]).cross(placesMm.back().at(t[2]))) / 6.0;
+        volumesMm3.push_back(volume);
+    }
+    EXPECT_EQ(at, bytes.size());
+    // Closed and the right way out as before; every place near the sphere, and as many as it takes to show it.
+    EXPECT_NEAR(volumesMm3[0], 4.0 / 3.0 * M_PI * 8.0, 0.05 * 4.0 / 3.0 * M_PI * 8.0);
+    for (const core::Vec3& p : placesMm[0])
+        EXPECT_NEAR((p - centre).norm(), 2.0, 0.05);
+    EXPECT_GT(placesMm[0].size(), 300u);
+    EXPECT_LT(placesMm[0].size(), toothCase.scenery[1].mesh.vertices.size() / 4);
+    // Of the large one what lies within 6 mm of the block alone.
+    EXPECT_GT(placesMm[1].size(), 300u);
+    for (const core::Vec3& p : placesMm[1])
+        EXPECT_GT(p.x(), -2.0 - 6.0 - 0.2);
+    EXPECT_EQ(page.text["notes"].size(), 1u);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "handpiece/school/people/secret.h"
+#include "school/server/exam_stage.h"
 #include "school/server/school_fixture.h"
 #include "school/server/small_picture.h"
 #include "school/worker.h"
@@ -60,9 +61,12 @@ void fill(const fs::path& data, Chair& chair) {
             (void)books.append(upload, have, std::span(bytes).subspan(have), 3);
         (void)books.push(p);
     }
+    const std::vector<std::string> sittings = holdExam(books, data, {{"s017", session()}, {"s018", others}});
     Worker worker({data}, systemClock());
     while (worker.workOnce()) {
     }
+    decideExam(books, sittings.at(0), "confirm", "t1", "fail", "The floor is too deep <b>");
+    decideExam(books, sittings.at(0), "appeal", "s017", "", "It is within the range");
 }
 
 void serve() {

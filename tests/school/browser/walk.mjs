@@ -37,7 +37,7 @@ async function lookAt(page, who, kind, language) {
         if (["serious", "critical"].includes(v.impact)) find(`${name}: axe ${v.id} (${v.impact}): ${v.help}: ${v.nodes.slice(0, 2).map((n) => n.html.slice(0, 160)).join(" | ")}`);
     const about = await page.evaluate(() => ({
         title: document.title, language: document.documentElement.lang, heads: document.querySelectorAll("h1").length,
-        wanted: [...document.querySelectorAll("a[href], button, input:not([type=hidden]), select, textarea")].filter((e) => e.checkVisibility() && !e.disabled && !(e.type === "radio" && !e.checked && document.querySelector(`input[name="${e.name}"]:checked`))).length,
+        wanted: [...document.querySelectorAll("a[href], button, input:not([type=hidden]), select, textarea")].filter((e) => e.checkVisibility() && !e.disabled && !(e.type === "radio" && e !== (document.querySelector(`input[name="${e.name}"]:checked`) ?? document.querySelector(`input[name="${e.name}"]`)))).length,
     }));
     if (!about.title || about.heads !== 1 || about.language !== language) find(`${name}: title "${about.title}", ${about.heads} h1, language ${about.language}`);
     // What can be used is reached by the key alone, and one sees where one is.
@@ -72,23 +72,35 @@ async function logIn(page, address, login) {
 }
 
 /** Every form, as it stands and with nonsense: a sentence, never an error of the server. */
-async function sendForms(page, address, who, from) {
+async function sendForms(page, address, who, from, sentOnce, next) {
     await page.goto(from, { waitUntil: "load" });
     const count = await page.evaluate(() => document.querySelectorAll("main form").length);
     for (let i = 0; i < count; ++i)
-        for (const how of ["as it stands", "with nonsense"]) {
+        for (const how of ["with nonsense", "as it stands"]) {
             await page.goto(from, { waitUntil: "load" });
-            const sent = await page.evaluate(async (i, how) => {
+            // Read in the page, sent from here: the page's own policy lets no script send anything.
+            const form = await page.evaluate((i) => {
                 const form = document.querySelectorAll("main form")[i];
                 if (!form || form.querySelector("button.grave")) return null;
-                const data = new FormData(form), junk = ["-1e999", "<script>alert(1)</script>", "'; DROP TABLE people; --", "\u0000x", "../../etc/passwd"];
-                if (how === "with nonsense") { let k = 0; for (const key of new Set(data.keys())) if (key !== "token") { const was = data.get(key); data.set(key, was instanceof File ? new File([junk[k++ % 5]], "x") : junk[k++ % 5]); } }
-                const isFile = form.enctype === "multipart/form-data", isGet = form.method === "get";
-                const answer = await fetch(isGet ? `${form.action.split("?")[0]}?${new URLSearchParams(data)}` : form.action, isGet ? {} : { method: "POST", body: isFile ? data : new URLSearchParams(data), redirect: "manual" });
-                return { action: form.getAttribute("action"), status: answer.status, text: answer.status ? (await answer.text()).slice(0, 4000) : "" };
-            }, i, how);
+                const button = form.querySelector("button[name]");
+                return { action: form.action, isFile: form.enctype === "multipart/form-data", isGet: form.method === "get",
+                    data: [...new FormData(form)].map(([name, value]) => [name, value instanceof File ? null : value]).concat(button ? [[button.name, button.value]] : []) };
+            }, i);
+            if (!form) continue;
+            const once = `${kindOf(form.action)} ${form.data.map(([name, value]) => name === "token" ? "" : form.isFile || value === null ? name : `${name}`)} ${how}`;
+            if (sentOnce.has(once)) continue;
+            sentOnce.add(once);
+            const junk = ["-1e999", "<script>alert(1)</script>", "'; DROP TABLE people; --", "\u0000x", "../../etc/passwd"];
+            let k = 0;
+            const data = form.data.map(([name, value]) => [name, how === "with nonsense" && name !== "token" ? (value === null ? new File([junk[k++ % 5]], "x") : junk[k++ % 5]) : value ?? new File([], "")]);
+            const body = form.isFile ? new FormData() : new URLSearchParams(data);
+            if (form.isFile) for (const [name, value] of data) body.append(name, value);
+            const headers = { Cookie: (await page.cookies(address)).map((c) => `${c.name}=${c.value}`).join("; ") };
+            const answer = form.isGet ? await fetch(`${form.action.split("?")[0]}?${body}`, { headers }) : await fetch(form.action, { method: "POST", body, headers, redirect: "manual" });
+            const sent = { action: new URL(form.action).pathname, status: answer.status, text: (await answer.text()).slice(0, 4000) };
             if (!sent) continue;
             seen.push({ who, form: sent.action, how, status: sent.status });
+            if (answer.headers.get("location")) next.push(new URL(answer.headers.get("location"), address).href);
             if (sent.status >= 500) find(`${who} ${sent.action} ${how}: ${sent.status} ${sent.text.slice(0, 200)}`);
             if (sent.text.includes("<script>alert(1)")) find(`${who} ${sent.action}: a script comes back as one`);
         }
@@ -100,34 +112,47 @@ async function walk(browser, address, who, language, forms) {
     await page.setViewport({ width: 1366, height: 768 });
     await page.setExtraHTTPHeaders({ "Accept-Language": `${language},en;q=0.5` });
     page.setBypassCSP(false);
-    let at = "";
-    page.on("console", (m) => { if (["error", "warn"].includes(m.type())) find(`${language} ${who} ${at}: console: ${m.text()}`); });
+    let at = "", isSending = false;
+    // A page whose thing a form has changed may be gone; what the driver of a drawing surface thinks is its own affair.
+    page.on("console", (m) => { if (["error", "warn"].includes(m.type()) && !(isSending && /status of 40[34]/.test(m.text())) && !/GPU stall|GL Driver Message/.test(m.text())) find(`${language} ${who} ${at}: console: ${m.text()}`); });
     page.on("pageerror", (e) => find(`${language} ${who} ${at}: ${e.message}`));
     page.on("requestfailed", (r) => { if (!/ERR_ABORTED/.test(r.failure()?.errorText ?? "")) find(`${language} ${who} ${at}: ${r.url()} ${r.failure()?.errorText}`); });
     page.on("request", (r) => { if (!r.url().startsWith(address) && !/^(data|blob):/.test(r.url())) find(`${language} ${who} ${at}: asks elsewhere: ${r.url()}`); });
     if (who === "student") { await page.goto(`${address}/login`); await lookAt(page, "nobody", "/login", language); }
     await logIn(page, address, kPeople[who]);
-    const waiting = [page.url()], known = new Set(waiting), kinds = new Map(), withForms = [];
+    const waiting = [page.url()], known = new Set(waiting), kinds = new Map(), withForms = [], sentOnce = new Set();
     while (waiting.length > 0) {
         at = waiting.shift();
         const kind = kindOf(at), times = kinds.get(kind) ?? 0;
-        if (times >= kMostOfAKind) continue;
-        kinds.set(kind, times + 1);
-        let answer;
-        try { answer = await page.goto(at, { waitUntil: "load" }); } catch (e) {
-            // A file to keep is no page.
-            if (/ERR_ABORTED|net::ERR_/.test(e.message)) { seen.push({ who, language, address: kind, status: "file" }); continue; }
-            throw e;
+        if (times < kMostOfAKind) {
+            kinds.set(kind, times + 1);
+            let answer = null;
+            try { answer = await page.goto(at, { waitUntil: "load" }); } catch (e) {
+                // A file to keep is no page.
+                if (!/ERR_ABORTED/.test(e.message)) throw e;
+                seen.push({ who, language, address: kind, status: "file" });
+            }
+            if (answer) {
+                seen.push({ who, language, address: kind, status: answer.status() });
+                if (answer.status() >= 400) find(`${language} ${who}: a link leads to ${answer.status()}: ${kind}`);
+                else if (/text\/html/.test(answer.headers()["content-type"])) {
+                    if (times === 0) await lookAt(page, who, kind, language);
+                    if (forms) withForms.push(at);
+                    for (const next of await page.evaluate(() => [...document.querySelectorAll("a[href]")].map((a) => a.href.split("#")[0])))
+                        if (next.startsWith(address) && !known.has(next)) { known.add(next); waiting.push(next); }
+                }
+            }
         }
-        seen.push({ who, language, address: kind, status: answer.status() });
-        if (answer.status() >= 400) { find(`${language} ${who}: a link leads to ${answer.status()}: ${kind}`); continue; }
-        if (!/text\/html/.test(answer.headers()["content-type"])) continue;
-        if (times === 0) await lookAt(page, who, kind, language);
-        if (forms && times === 0) withForms.push(at);
-        for (const next of await page.evaluate(() => [...document.querySelectorAll("a[href]")].map((a) => a.href.split("#")[0])))
-            if (next.startsWith(address) && !known.has(next)) { known.add(next); waiting.push(next); }
+        // All that can be reached was looked at: now forms, and what they lead to.
+        while (waiting.length === 0 && withForms.length > 0) {
+            const next = [];
+            isSending = true;
+            await sendForms(page, address, who, (at = withForms.shift()), sentOnce, next);
+            isSending = false;
+            // Another page now, also where it was seen before.
+            for (const one of next) { kinds.delete(kindOf(one)); known.add(one); waiting.push(one); }
+        }
     }
-    for (const from of withForms) { at = from; await sendForms(page, address, who, from); }
     await context.close();
 }
 

@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each person sees of a school in a browser, and what not.
-#include <regex>
-
-#include "handpiece/school/people/secret.h"
-#include "school/server/school_fixture.h"
-#include "school/worker.h"
+#include "school/server/pages_fixture.h"
 
 namespace handpiece::school_server {
 namespace {
@@ -12,92 +8,6 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
-
-constexpr const char* kPassword = "a long enough one";
-
-/// Somebody at a browser.
-class Browser {
-  public:
-    explicit Browser(const std::string& address) : http_(address) {}
-    httplib::Result get(const std::string& path) { return http_.Get(path, headers()); }
-    httplib::Result post(const std::string& path, const httplib::Params& form) {
-        httplib::Result result = http_.Post(path, headers(), form);
-        if (result) take(*result);
-        return result;
-    }
-    int logIn(const std::string& login, const std::string& password = kPassword) {
-        const auto result = post("/login", {{"login", login}, {"password", password}});
-        return result ? result->status : 0;
-    }
-    [[nodiscard]] const std::string& cookie() const { return cookie_; }
-
-  private:
-    [[nodiscard]] httplib::Headers headers() const {
-        return cookie_.empty() ? httplib::Headers{} : httplib::Headers{{"Cookie", "handpiece=" + cookie_}};
-    }
-    void take(const httplib::Response& response) {
-        const std::string set = response.get_header_value("Set-Cookie");
-        std::smatch found;
-        if (std::regex_search(set, found, std::regex("handpiece=([0-9a-f]*);"))) cookie_ = found[1];
-    }
-    httplib::Client http_;
-    std::string cookie_;
-};
-
-class PagesTest : public SchoolTest {
-  protected:
-    void SetUp() override {
-        SchoolTest::SetUp();
-        Books open(data());
-        const Act act{"server", 1};
-        const std::string hash = school::hashOfPassword(kPassword);
-        const auto person = [&](const char* code, const char* name, const char* role) {
-            return school::Person{code, name, code, "", hash, {role}, 1, 0};
-        };
-        const std::vector<school::Person> people{
-            person("t1", "Dr. Sato", "teacher"), person("t2", "Dr. Other", "teacher"),
-            person("e1", "Examiner", "examiner"), person("a1", "Admin", "administrator"),
-            person("s018", "Jun <b>", "student")};
-        open.add(people, act);
-        open.setPassword("s017", hash, act);
-        open.add(school::SchoolClass{"c1", "Operative <1>", "", 0, 1, 0}, act);
-        open.add(school::SchoolClass{"c2", "Others", "", 0, 1, 0}, act);
-        const std::vector<school::Enrolment> enrolments{{"c1", "s017", "student"},
-                                                        {"c1", "s018", "student"},
-                                                        {"c1", "t1", "teacher"},
-                                                        {"c1", "e1", "examiner"},
-                                                        {"c2", "t2", "teacher"}};
-        open.enrol(enrolments, act);
-        const std::string exercise = rubric::hashText(tasks::contentHash(blockTask()));
-        const rubric::Rubric rubric = rubric::parseRubric(kRubric, "rubric.toml");
-        open.add(school::Assignment{"as1", "c1", exercise, rubric::hashText(rubric::hashOf(rubric)), "Block & hole",
-                                    "practice", "", 1, 4'000'000'000'000},
-                 act);
-        chair_ = std::make_unique<Chair>();
-        assigned_ = push("as1", 0);
-        practice_ = push("", 1);
-        Worker worker({data()}, systemClock());
-        while (worker.workOnce()) {
-        }
-    }
-    std::string push(const std::string& assignment, int number) {
-        school::PushedAttempt p;
-        p.attempt = *chair_->store().attempt(chair_->finish(session(), fmt::format("{}.h5", number)));
-        p.station = std::string(32, 'c'), p.person = "s017", p.assignment = assignment;
-        p.files = {school::sha256Of(session())};
-        p.received = 10;
-        Books open(data());
-        if (number == 0) {
-            (void)open.enrolStation(kCode, p.station, std::string(64, 'd'), 2);
-            const std::vector<std::byte> bytes = core::readFile(session());
-            (void)open.append({p.station, p.files.front(), bytes.size()}, 0, bytes, 3);
-        }
-        EXPECT_TRUE(open.push(p));
-        return p.attempt.id;
-    }
-    std::unique_ptr<Chair> chair_;
-    std::string assigned_, practice_;
-};
 
 TEST_F(PagesTest, EachSeesWhatIsTheirs) {
     School school(data());
@@ -143,8 +53,7 @@ TEST_F(PagesTest, EachSeesWhatIsTheirs) {
         httplib::Client http(school.address());
         for (const Route& route : Server::routes()) {
             if (route.caller != Caller::person) continue;
-            const std::string path =
-                std::regex_replace(route.pattern, std::regex(R"(\([^)]*\))"), std::string(32, 'a'));
+            const std::string path = pathOf(route.pattern);
             const httplib::Headers headers{{"Cookie", "other=1; handpiece=" + cookie}};
             const auto result =
                 route.method == "GET" ? http.Get(path, headers) : http.Post(path, headers, "", "text/plain");
@@ -191,7 +100,8 @@ TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
         ++tried;
     EXPECT_EQ(tried, 5);
     EXPECT_EQ(browser.logIn("t1"), 429) << "the right one waits too";
-    EXPECT_THAT(browser.post("/login", {{"login", "t1"}, {"password", "x"}})->body, HasSubstr("Try again in"));
+    EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body,
+                HasSubstr("Try again in"));
     EXPECT_TRUE(browser.cookie().empty());
 }
 
@@ -201,12 +111,12 @@ TEST_F(PagesTest, ALogInEnds) {
     ASSERT_EQ(browser.logIn("t1"), 303);
     const std::string old = browser.cookie();
     // From another page than one of this log-in: nothing happens.
-    EXPECT_EQ(browser.post("/logout", {{"token", "guess"}})->status, 403);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", "guess"}})->status, 403);
     EXPECT_EQ(browser.get("/classes")->status, 200);
     const std::string page = browser.get("/classes")->body;
     std::smatch token;
     ASSERT_TRUE(std::regex_search(page, token, std::regex("name=\"token\" value=\"([0-9a-f]+)\"")));
-    EXPECT_EQ(browser.post("/logout", {{"token", token[1].str()}})->status, 303);
+    EXPECT_EQ(browser.post("/logout", httplib::Params{{"token", token[1].str()}})->status, 303);
     httplib::Client http(school.address());
     EXPECT_EQ(http.Get("/classes", {{"Cookie", "handpiece=" + old}})->status, 303);
     // Whoever is erased is nobody from then on.

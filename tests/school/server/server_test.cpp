@@ -4,7 +4,7 @@
 #include <set>
 
 #include "handpiece/school/people/secret.h"
-#include "school/server/school_fixture.h"
+#include "school/server/browser.h"
 #include "school/worker.h"
 #include "support/error_of.h"
 
@@ -199,9 +199,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
     httplib::Client http(school.address());
     for (const Route& route : Server::routes()) {
         if (route.caller != Caller::station) continue;
-        std::string path = route.pattern;
-        if (const std::size_t at = path.find('('); at != std::string::npos)
-            path = path.substr(0, at) + std::string(64, 'a') + "?bytes=1&offset=0";
+        const std::string path = pathOf(route.pattern) + "?bytes=1&offset=0";
         for (const httplib::Headers& headers :
              {httplib::Headers{{"Handpiece-Protocol", "1"}},
               httplib::Headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer "}},

@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "handpiece/school/store/retention.h"
 #include "school/store/books_fixture.h"
 #include "support/error_of.h"
 #include "support/random.h"
@@ -548,10 +549,10 @@ TEST_P(BooksTest, WhatAClosedClassNeedNotKeepGoesWithItsFiles) {
     EXPECT_TRUE(books->isShared(id(1)));
     const Job job = books->takeJob("w", kNow, 1000).value();
     books->finish(job, scoreOf(job, "w"));
-    EXPECT_EQ(books->expire(Act{"server", kNow + 1000 * kDay}), 0) << "the class is open";
+    EXPECT_EQ(Retention(*books).expire(Act{"server", kNow + 1000 * kDay}), 0) << "the class is open";
     books->close("c1", kAdmin);
-    EXPECT_EQ(books->expire(Act{"server", kNow + 365 * kDay - 1}), 0);
-    EXPECT_EQ(books->expire(Act{"server", kNow + 365 * kDay}), 1);
+    EXPECT_EQ(Retention(*books).expire(Act{"server", kNow + 365 * kDay - 1}), 0);
+    EXPECT_EQ(Retention(*books).expire(Act{"server", kNow + 365 * kDay}), 1);
     EXPECT_FALSE(books->attempt(id(1)));
     EXPECT_TRUE(books->attempt(id(2))) << "practice is no class's";
     EXPECT_FALSE(books->files().has(sha256("its own")));
@@ -559,7 +560,7 @@ TEST_P(BooksTest, WhatAClosedClassNeedNotKeepGoesWithItsFiles) {
     EXPECT_TRUE(books->files().has(sha256(kPackFile)));
     for (const char* table : {"scores", "marks", "comments", "judgements", "shares"})
         EXPECT_EQ(sql(fmt::format("SELECT count(*) FROM {}", table)), "0") << table;
-    EXPECT_EQ(books->expire(Act{"server", kNow + 366 * kDay}), 0);
+    EXPECT_EQ(Retention(*books).expire(Act{"server", kNow + 366 * kDay}), 0);
     EXPECT_EQ(books->audit(0, 1000, id(1)).back().what, "expire");
     // A file that a killed server left is swept after a day.
     core::writeFile(books->files().path(sha256("left")), std::string("left"));
@@ -692,7 +693,7 @@ TEST(BooksOfBothDatabases, AreTheSameByteForByte) {
         told += asText(books.about("s1", kAdmin));
         books.close("c1", kAdmin);
         const std::string all = asText(books.everything());
-        told += std::to_string(books.expire(Act{"server", kNow + 400 * kDay}));
+        told += std::to_string(Retention(books).expire(Act{"server", kNow + 400 * kDay}));
         return told + all + asText(books.everything());
     };
     const std::string sqlite = play(folder.path() / "sqlite", "");

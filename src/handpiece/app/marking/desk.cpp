@@ -323,10 +323,10 @@ const rubric::Criterion& Desk::criterion(const std::string& id) const {
     return *found;
 }
 
-std::vector<std::string> Desk::asked() const {
+std::vector<std::string> askedOf(const rubric::Rubric& rubric) {
     std::vector<std::string> ids;
     bool isGraded = false;
-    for (const rubric::Criterion& c : setup_.rubric.criteria) {
+    for (const rubric::Criterion& c : rubric.criteria) {
         if (c.isGraded() || !c.bands.empty()) ids.push_back(c.id);
         isGraded = isGraded || c.isGraded();
     }
@@ -334,32 +334,45 @@ std::vector<std::string> Desk::asked() const {
     return ids;
 }
 
-void Desk::setMark(const std::string& code, const std::string& id, const Mark& mark) {
-    placeOf(code);
-    const auto refuse = [&](const std::string& problem, const std::string& remedy) {
-        throw core::Error(problem, fmt::format("{}, {}", code, id), remedy);
-    };
-    if (!state_.isBlind) refuse("this desk shows the machine's score", "override it, with a reason");
-    if (sheet(code).isIn) refuse("the mark is in", "override the machine's score, with a reason");
+std::vector<std::string> Desk::asked() const {
+    return askedOf(setup_.rubric);
+}
+
+double mostOf(const rubric::Rubric& rubric, const std::string& id) {
     double most = 0.0;
+    for (const rubric::Criterion& c : rubric.criteria)
+        if (id == kTotal || c.id == id) most += c.weight;
+    return most;
+}
+
+void requireMark(const rubric::Rubric& rubric, const std::string& id, const Mark& mark, const std::string& where) {
+    const auto refuse = [&](const std::string& problem, const std::string& remedy) {
+        throw core::Error(problem, where, remedy);
+    };
     bool takesBand = false;
-    if (id == kTotal) {
-        for (const rubric::Criterion& c : setup_.rubric.criteria)
-            most += c.weight;
-    } else {
-        const rubric::Criterion& c = criterion(id);
-        most = c.weight;
-        takesBand = !c.bands.empty();
-        if (!takesBand && !c.isGraded()) refuse("it is shown, not judged", "leave it");
+    if (id != kTotal) {
+        const rubric::Criterion* c = rubric.criterion(id);
+        if (c == nullptr) return refuse(fmt::format("the rubric has no criterion \"{}\"", id), "choose one of its own");
+        takesBand = !c->bands.empty();
+        if (!takesBand && !c->isGraded()) refuse("it is shown, not judged", "leave it");
         if (takesBand && !mark.cannotTell &&
-            std::none_of(c.bands.begin(), c.bands.end(), [&](const rubric::Band& b) { return b.id == mark.band; }))
+            std::none_of(c->bands.begin(), c->bands.end(), [&](const rubric::Band& b) { return b.id == mark.band; }))
             refuse(fmt::format("it has no band \"{}\"", mark.band), "choose one of its own");
     }
     if (mark.cannotTell ? !mark.band.empty() || mark.points.has_value() : takesBand == mark.points.has_value())
         refuse("one mark is asked for", takesBand ? "choose a band" : "give points");
     if (!takesBand && !mark.band.empty()) refuse("it has no bands", "give points");
-    if (mark.points && !(*mark.points >= 0.0 && *mark.points <= most))
+    if (const double most = mostOf(rubric, id); mark.points && !(*mark.points >= 0.0 && *mark.points <= most))
         refuse(fmt::format("{} points", *mark.points), fmt::format("give 0 to {:g}", most));
+}
+
+void Desk::setMark(const std::string& code, const std::string& id, const Mark& mark) {
+    placeOf(code);
+    const std::string where = fmt::format("{}, {}", code, id);
+    if (!state_.isBlind) throw core::Error("this desk shows the machine's score", where, "override it, with a reason");
+    if (sheet(code).isIn) throw core::Error("the mark is in", where, "override the machine's score, with a reason");
+    if (id != kTotal) static_cast<void>(criterion(id));
+    requireMark(setup_.rubric, id, mark, where);
     change([&](DeskState& state) { state.sheets[code].marks[id] = mark; });
 }
 

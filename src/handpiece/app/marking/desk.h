@@ -64,6 +64,14 @@ struct Sheet {
 /// In place of a criterion's id: of all points together.
 inline constexpr const char* kTotal = "total";
 
+/// Criteria that ask for a mark, in the rubric's order; kTotal last, where points are given.
+[[nodiscard]] std::vector<std::string> askedOf(const rubric::Rubric& rubric);
+/// The most points of one of them.
+[[nodiscard]] double mostOf(const rubric::Rubric& rubric, const std::string& id);
+/// Throws core::Error, naming `where`: a criterion or band that is not there, points beyond the weight, both or neither
+/// of band and points where the criterion asks for one.
+void requireMark(const rubric::Rubric& rubric, const std::string& id, const Mark& mark, const std::string& where);
+
 struct DeskSetup {
     std::filesystem::path folder;  ///< of the returned work; the desk's file lies in it
     std::string marker;            ///< name or code

@@ -32,11 +32,37 @@ std::string told(const rubric::Criterion& c, const score::CriterionScore& s) {
 
 }  // namespace
 
+std::string marksHead() {
+    return csvLine({"item", "rater", "criterion", "mark"});
+}
+
+std::string marksLines(const std::string& item, const std::string& rater, const std::vector<std::string>& asked,
+                       const std::map<std::string, Mark>& marks) {
+    std::string out;
+    for (const std::string& id : asked)
+        if (const auto mark = marks.find(id); mark != marks.end())
+            out += csvLine({item, rater, id, told(mark->second)});
+    return out;
+}
+
+std::string machineLines(const std::string& item, const rubric::Rubric& rubric, const std::vector<std::string>& asked,
+                         const score::Assessment& a) {
+    std::string out;
+    for (std::size_t i = 0; i < a.criteria.size(); ++i)
+        if (std::find(asked.begin(), asked.end(), a.criteria[i].id) != asked.end())
+            out += csvLine({item, kMachine, a.criteria[i].id, told(rubric.criteria[i], a.criteria[i])});
+    // Of all points, as the marker's: a score of part of them would be another scale.
+    if (!asked.empty() && asked.back() == kTotal)
+        out +=
+            csvLine({item, kMachine, kTotal, a.maxScore == a.wholeScore ? fmt::format("{}", a.score) : std::string()});
+    return out;
+}
+
 std::string marksCsv(const Desk& desk, const std::vector<DeskState>& desks) {
     if (!desk.isBlind())
         throw core::Error("marks are not independent of the machine's where its score was seen", desk.file().string(),
                           "begin a desk that marks blind");
-    std::string out = csvLine({"item", "rater", "criterion", "mark"});
+    std::string out = marksHead();
     const std::vector<std::string> asked = desk.asked();
     std::set<std::string> open;  // ids of works that may be seen
     for (const std::string& code : desk.codes())
@@ -47,49 +73,43 @@ std::string marksCsv(const Desk& desk, const std::vector<DeskState>& desks) {
         for (const DeskItem& item : itemsOf(one)) {
             const auto sheet = one.sheets.find(item.code);
             if (!open.contains(item.workId) || sheet == one.sheets.end() || !sheet->second.isIn) continue;
-            for (const std::string& id : asked)
-                if (const auto mark = sheet->second.marks.find(id); mark != sheet->second.marks.end())
-                    out += csvLine({item.workId, one.marker + (item.isRepeat ? kAgain : ""), id, told(mark->second)});
+            out += marksLines(item.workId, one.marker + (item.isRepeat ? kAgain : ""), asked, sheet->second.marks);
         }
     }
     std::set<std::string> told_;
     for (const std::string& code : desk.codes()) {
         const assessment::Result* machine = desk.machine(code);
         if (machine == nullptr || !told_.insert(desk.work(code).id).second) continue;
-        const score::Assessment& a = machine->assessment;
-        for (std::size_t i = 0; i < a.criteria.size(); ++i)
-            if (std::find(asked.begin(), asked.end(), a.criteria[i].id) != asked.end())
-                out += csvLine(
-                    {desk.work(code).id, kMachine, a.criteria[i].id, told(desk.rubric().criteria[i], a.criteria[i])});
-        // Of all points, as the marker's: a score of part of them would be another scale.
-        if (asked.back() == kTotal)
-            out += csvLine({desk.work(code).id, kMachine, kTotal,
-                            a.maxScore == a.wholeScore ? fmt::format("{}", a.score) : std::string()});
+        out += machineLines(desk.work(code).id, desk.rubric(), asked, machine->assessment);
     }
     return out;
 }
 
 DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& desks, std::size_t draws) {
+    return agreementOfMarks(desk.rubric(), marksCsv(desk, desks), desk.file().string(), draws);
+}
+
+DeskAgreement agreementOfMarks(const rubric::Rubric& rubric, const std::string& csv, const std::string& where,
+                               std::size_t draws) {
     DeskAgreement agreement;
-    const std::string csv = marksCsv(desk, desks);
     if (std::count(csv.begin(), csv.end(), '\n') < 2) return agreement;
     std::map<std::string, assessment::MarkTable> tables;
-    for (assessment::MarkTable& table : assessment::parseMarks(csv, desk.file().string()))
+    for (assessment::MarkTable& table : assessment::parseMarks(csv, where))
         tables.emplace(table.criterion, std::move(table));
     std::set<std::string> raters;
-    for (const std::string& id : desk.asked()) {
+    for (const std::string& id : askedOf(rubric)) {
         const auto table = tables.find(id);
         if (table == tables.end()) continue;
         assessment::MarkScale scale;
-        const rubric::Criterion* c = desk.rubric().criterion(id);
+        const rubric::Criterion* c = rubric.criterion(id);
         if (c != nullptr && !c->bands.empty())
-            for (const rubric::BandName& band : desk.rubric().bands)
+            for (const rubric::BandName& band : rubric.bands)
                 if (std::any_of(c->bands.begin(), c->bands.end(),
                                 [&](const rubric::Band& b) { return b.id == band.id; }))
                     scale.categories.push_back(band.id);
         agreement.criteria.push_back(assessment::agreementOf(table->second, scale, draws));
         agreement.criteria.back().title =
-            c != nullptr ? report::criterionTitle(desk.rubric(), id) : config::words()("agreement.all-points");
+            c != nullptr ? report::criterionTitle(rubric, id) : config::words()("agreement.all-points");
         raters.insert(table->second.raters.begin(), table->second.raters.end());
     }
     agreement.raters.assign(raters.begin(), raters.end());

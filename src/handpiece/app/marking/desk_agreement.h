@@ -4,6 +4,7 @@
 /// How far markers agree with the machine, with themselves and with each other. Marks that were given blind alone:
 /// who has seen a score does not mark independently of it.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,6 +21,13 @@ inline constexpr const char* kAgain = " again";
 /// works, the same at every desk; only works that are revealed here. Throws core::Error where the desk is not blind.
 [[nodiscard]] std::string marksCsv(const Desk& desk, const std::vector<DeskState>& desks);
 
+/// The file's first line; what a marker said of an item; what the machine says of it: lines of such a file.
+[[nodiscard]] std::string marksHead();
+[[nodiscard]] std::string marksLines(const std::string& item, const std::string& rater,
+                                     const std::vector<std::string>& asked, const std::map<std::string, Mark>& marks);
+[[nodiscard]] std::string machineLines(const std::string& item, const rubric::Rubric& rubric,
+                                       const std::vector<std::string>& asked, const score::Assessment& machine);
+
 struct DeskAgreement {
     std::vector<assessment::CriterionAgreement> criteria;  ///< in the rubric's order, kTotal last
     std::vector<std::string> raters;                       ///< all that occur
@@ -33,6 +41,9 @@ struct DeskAgreement {
 /// Of marksCsv(). Empty without marks. `draws` of each bootstrap interval.
 [[nodiscard]] DeskAgreement agreementOfDesk(const Desk& desk, const std::vector<DeskState>& desks,
                                             std::size_t draws = assessment::kDraws);
+/// Of a file as marksCsv() makes it; `where` names it in messages.
+[[nodiscard]] DeskAgreement agreementOfMarks(const rubric::Rubric& rubric, const std::string& csv,
+                                             const std::string& where, std::size_t draws = assessment::kDraws);
 /// What pages call a rater: a marker as they are, the machine and works that came again in the program's language.
 [[nodiscard]] std::string raterName(const std::string& rater);
 /// Linear weighted kappa of each criterion with bands, of two raters, with its interval.

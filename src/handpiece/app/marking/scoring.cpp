@@ -86,33 +86,7 @@ struct Kept {
 
 namespace {
 
-constexpr view::Viewport kPicture{192, 144};
-
-/// The tooth worked on, as it was cut, from occlusal.
-view::Image pictureOf(const assessment::Work& work, int buccalSign) {
-    tooth::StateDelta own;
-    for (const tooth::StateDelta::Brick& brick : work.state.bricks)
-        if (tooth::toothOf(brick.id) == 0) own.bricks.push_back(brick);
-    own.removedMm3.own = work.state.removedMm3.own;
-    simulation::LiveTooth live(work.teeth.front(), own);
-    live.settle();
-    const core::Box bounds = live.model().outer.bounds();
-    view::Renderer renderer;
-    renderer.setTooth(bounds);
-    renderer.updateBricks(live.uncutSurface(), true);
-    renderer.updateBricks(live.takeNews());
-    view::Look look;
-    look.palette = view::Palette::textbook;
-    look.bur = look.turbine = look.debris = look.spray = false;
-    look.backgroundTop = look.backgroundBottom = {236, 239, 243};
-    view::Moment moment;
-    moment.burShown = false;
-    const view::Camera camera = view::standardView(view::StandardView::occlusal, bounds, buccalSign, kPicture);
-    view::Image image;
-    for (int i = 0; i < 8 && (renderer.draw(camera, kPicture, look, moment, image).refining || i == 0); ++i) {
-    }
-    return image;
-}
+constexpr int kPictureWidth = 192, kPictureHeight = 144;
 
 Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric) {
     const std::vector<std::byte> bytes = core::readFile(work.path, 8u << 20);
@@ -147,6 +121,32 @@ void requireSameExercise(const fs::path& path, const tasks::Task& task) {
 }
 
 }  // namespace
+
+view::Image pictureOf(const assessment::Work& work, int buccalSign, int widthPx, int heightPx) {
+    const view::Viewport viewport{widthPx, heightPx};
+    tooth::StateDelta own;
+    for (const tooth::StateDelta::Brick& brick : work.state.bricks)
+        if (tooth::toothOf(brick.id) == 0) own.bricks.push_back(brick);
+    own.removedMm3.own = work.state.removedMm3.own;
+    simulation::LiveTooth live(work.teeth.front(), own);
+    live.settle();
+    const core::Box bounds = live.model().outer.bounds();
+    view::Renderer renderer;
+    renderer.setTooth(bounds);
+    renderer.updateBricks(live.uncutSurface(), true);
+    renderer.updateBricks(live.takeNews());
+    view::Look look;
+    look.palette = view::Palette::textbook;
+    look.bur = look.turbine = look.debris = look.spray = false;
+    look.backgroundTop = look.backgroundBottom = {236, 239, 243};
+    view::Moment moment;
+    moment.burShown = false;
+    const view::Camera camera = view::standardView(view::StandardView::occlusal, bounds, buccalSign, viewport);
+    view::Image image;
+    for (int i = 0; i < 8 && (renderer.draw(camera, viewport, look, moment, image).refining || i == 0); ++i) {
+    }
+    return image;
+}
 
 Scored Scored::failed(core::Error error) {
     Scored scored;
@@ -183,7 +183,7 @@ Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const ru
         view::Image picture;
         if (settings.pictures) {
             try {
-                picture = pictureOf(done, task.toothCase.buccalSign);
+                picture = pictureOf(done, task.toothCase.buccalSign, kPictureWidth, kPictureHeight);
             } catch (const core::Error&) {
                 picture = {};  // no OpenGL: the score stands without a picture
             }

@@ -172,48 +172,43 @@ void HtmlReport::code(std::string_view text) {
 
 void HtmlReport::table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                        std::string_view caption) {
-    body_ += "<div class=\"scroll\"><table>";
-    if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
-    if (!header.empty()) {
-        body_ += "<thead><tr>";
-        for (std::size_t c = 0; c < header.size(); ++c) {
-            const bool numbers = c > 0 && !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) {
-                                     return c >= row.size() || row[c].empty() || isNumber(row[c]);
-                                 });
-            body_ += fmt::format("<th{}>{}</th>", numbers ? " class=\"n\"" : "", escaped(header[c]));
-        }
-        body_ += "</tr></thead>";
-    }
-    body_ += "<tbody>\n";
+    std::vector<std::vector<Cell>> cells;
     for (const std::vector<std::string>& row : rows) {
-        body_ += "<tr>";
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            const std::string_view first = std::string_view(row[c]).substr(0, row[c].find_first_of(" :,;"));
-            const std::string_view kind = c > 0 && isNumber(row[c]) ? " class=\"n\""
-                                          : first == "yes"          ? " class=\"yes\""
-                                          : first == "no"           ? " class=\"no\""
-                                                                    : "";
-            body_ += fmt::format("<td{}>{}</td>", kind, escaped(row[c]));
-        }
-        body_ += "</tr>\n";
+        cells.emplace_back();
+        for (const std::string& text : row)
+            cells.back().push_back({text});
     }
-    body_ += "</tbody></table></div>\n";
+    linkedTable(header, cells, caption);
 }
 
 void HtmlReport::linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                              std::string_view caption) {
     body_ += "<div class=\"scroll\"><table>";
     if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
-    body_ += "<thead><tr>";
-    for (const std::string& head : header)
-        body_ += fmt::format("<th scope=\"col\">{}</th>", escaped(head));
-    body_ += "</tr></thead><tbody>\n";
+    if (!header.empty()) {
+        body_ += "<thead><tr>";
+        for (std::size_t c = 0; c < header.size(); ++c) {
+            const bool numbers = c > 0 && !rows.empty() && std::all_of(rows.begin(), rows.end(), [c](const auto& row) {
+                                     return c >= row.size() || row[c].text.empty() || isNumber(row[c].text);
+                                 });
+            body_ += fmt::format("<th scope=\"col\"{}>{}</th>", numbers ? " class=\"n\"" : "", escaped(header[c]));
+        }
+        body_ += "</tr></thead>";
+    }
+    body_ += "<tbody>\n";
     for (const std::vector<Cell>& row : rows) {
         body_ += "<tr>";
-        for (const Cell& cell : row)
-            body_ += cell.address.empty()
-                         ? fmt::format("<td>{}</td>", escaped(cell.text))
-                         : fmt::format("<td><a href=\"{}\">{}</a></td>", escaped(cell.address), escaped(cell.text));
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            const Cell& cell = row[c];
+            const std::string_view first = std::string_view(cell.text).substr(0, cell.text.find_first_of(" :,;"));
+            const std::string_view kind = c > 0 && isNumber(cell.text) ? " class=\"n\""
+                                          : first == "yes"             ? " class=\"yes\""
+                                          : first == "no"              ? " class=\"no\""
+                                                                       : "";
+            body_ += cell.address.empty() ? fmt::format("<td{}>{}</td>", kind, escaped(cell.text))
+                                          : fmt::format("<td{}><a href=\"{}\">{}</a></td>", kind, escaped(cell.address),
+                                                        escaped(cell.text));
+        }
         body_ += "</tr>\n";
     }
     body_ += "</tbody></table></div>\n";
@@ -244,6 +239,12 @@ void HtmlReport::script(std::string_view address, std::string_view json) {
 
 void HtmlReport::place(std::string_view id, std::string_view without) {
     body_ += fmt::format("<section id=\"{}\"><p class=\"missing\">{}</p></section>\n", escaped(id), escaped(without));
+}
+
+void HtmlReport::progress(double done, double all, std::string_view words) {
+    body_ +=
+        fmt::format("<p role=\"status\"><progress max=\"{0}\" value=\"{1}\" aria-label=\"{2}\"></progress> {2}</p>\n",
+                    all, done, escaped(words));
 }
 
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
@@ -328,8 +329,7 @@ std::string HtmlReport::text() const {
         (hasViewer_ ? "; script-src " + viewerInPolicy() : std::string());
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"{}\">\n<head>\n<meta charset=\"utf-8\">\n{}"
-        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-        "<link rel=\"icon\" href=\"data:,\">\n<title>{}</title>\n{}"
+        "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{}</title>\n{}"
         "<style>{}{}{}{}{}</style>\n</head>\n<body>\n{}<main id=\"main\">\n{}</main>\n{}{}</body>\n</html>\n",
         config::words().language(),
         isSite ? std::string() : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy),

@@ -55,10 +55,12 @@ class HtmlReport {
     /// Cells "yes" and "no" are coloured.
     void table(const std::vector<std::string>& header, const std::vector<std::vector<std::string>>& rows,
                std::string_view caption = {});
-    /// As table(), cells as they are.
+    /// As table().
     void linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                      std::string_view caption = {});
     void form(const Form& form);
+    /// How far something is: `done` of `all`, in words as well.
+    void progress(double done, double all, std::string_view words);
     /// What, and how much.
     void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.

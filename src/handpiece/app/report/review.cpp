@@ -12,6 +12,7 @@
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/page_png.h"
+#include "handpiece/app/report/review_around.h"
 #include "handpiece/app/report/review_data.h"
 #include "handpiece/app/report/session_report.h"
 #include "handpiece/base/config/words.h"
@@ -233,8 +234,22 @@ struct ReviewGatherer::State {
         });
         now = uncut;
         isChanged.resize(grid->bricks());
-        if (!of.station().others.empty() || !of.toothCase().scenery.empty())
-            notes.push_back(words().text("review.no-neighbours"));
+        const auto bounds = toothBoundsMm();
+        around = aroundOf(of.toothCase(), bounds.first, bounds.second);
+        if (!around.parts.empty()) notes.push_back(words().text("review.around-uncut"));
+    }
+
+    /// Of the uncut tooth.
+    [[nodiscard]] std::pair<Vec3, Vec3> toothBoundsMm() const {
+        Vec3 low = Vec3::Constant(1e9), high = Vec3::Constant(-1e9);
+        for (int z = 0; z < grid->nodes[2]; ++z)
+            for (int y = 0; y < grid->nodes[1]; ++y)
+                for (int x = 0; x < grid->nodes[0]; ++x)
+                    if (uncut.values[uncut.index(x, y, z)] <= kMiddle) {
+                        low = low.cwiseMin(grid->placeMm(x, y, z));
+                        high = high.cwiseMax(grid->placeMm(x, y, z));
+                    }
+        return {low, high};
     }
 
     [[nodiscard]] double durationS() const {
@@ -362,6 +377,7 @@ struct ReviewGatherer::State {
     int buccalSign = 1;
     std::uint64_t caseKey = 0;
     std::vector<std::string> notes;
+    Around around;
     std::vector<Sitting> sittings;
     Json moments = Json::array(), strokes = Json::array();
     std::vector<simulation::PlotPoint> points;
@@ -467,6 +483,21 @@ std::vector<T> everyOther(std::vector<T> all) {
     return fewer;
 }
 
+/// Columns of threes as rows, part by part.
+std::vector<std::uint8_t> aroundBytes(const Around& around) {
+    std::vector<std::uint8_t> all;
+    for (const AroundPart& part : around.parts)
+        for (const auto* threes : {&part.vertices, &part.triangles}) {
+            std::vector<std::vector<std::uint16_t>> rows(3);
+            for (const std::array<std::uint16_t, 3>& three : *threes)
+                for (std::size_t k = 0; k < 3; ++k)
+                    rows[k].push_back(three[k]);
+            const std::vector<std::uint8_t> planes = planesOf(rows);
+            all.insert(all.end(), planes.begin(), planes.end());
+        }
+    return all;
+}
+
 std::vector<std::uint8_t> posedOf(const std::vector<Pose>& all, const tooth::ToothModel& model) {
     std::vector<double> tipMm(all.size());
     core::parallelFor(all.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -517,7 +548,7 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
     const State& s = *state_;
     const field::FieldView& view = s.grid->view;
 
-    Json json{{"format", "handpiece-review"}, {"version", 1}, {"language", words().language()}, {"title", title}};
+    Json json{{"format", "handpiece-review"}, {"version", 2}, {"language", words().language()}, {"title", title}};
     Json said = Json::object();
     for (const auto& [id, text] : words().texts())
         if (id.rfind("review.", 0) == 0 && id.rfind("review.event-", 0) != 0) said[id.substr(7)] = text;
@@ -536,6 +567,12 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
         tissues.push_back(
             {{"id", static_cast<int>(entry.tissue)}, {"name", nameOf(entry.tissue)}, {"colour", hexOf(entry.colour)}});
     json["tissues"] = std::move(tissues);
+    json["around"] = {{"lowMm", threeOf(s.around.lowMm)}, {"stepMm", Around::kStepMm}, {"parts", Json::array()}};
+    for (const AroundPart& part : s.around.parts)
+        json["around"]["parts"].push_back({{"name", part.name},
+                                           {"colour", hexOf(view::colourOf(part.tissue, view::Palette::textbook))},
+                                           {"vertices", part.vertices.size()},
+                                           {"triangles", part.triangles.size()}});
     json["burs"] = Json::array();
     for (const auto& [fromS, bur] : s.burs)
         json["burs"].push_back(burOf(fromS, *bur));
@@ -571,7 +608,7 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
     }
 
     const std::vector<std::uint8_t> uncut = differencesOf(s.uncut), tissue = stepsOf(s.tissue.values),
-                                    curved = planesOf(curves);
+                                    curved = planesOf(curves), around = aroundBytes(s.around);
     std::vector<std::uint8_t> ideal;
     if (against.task != nullptr && against.task->preparation) {
         if (cases::caseKey(against.task->toothCase) != s.caseKey)
@@ -605,14 +642,15 @@ Review ReviewGatherer::review(const std::string& title, const ReviewedAgainst& a
         json["poses"] = kept.size();
         json["curvePoints"] = s.points.size();
         json["sections"] = Json::array();
-        const std::array<std::pair<const char*, const std::vector<std::uint8_t>*>, 7> sections{{{"uncut", &uncut},
+        const std::array<std::pair<const char*, const std::vector<std::uint8_t>*>, 8> sections{{{"uncut", &uncut},
                                                                                                 {"tissue", &tissue},
                                                                                                 {"ideal", &ideal},
+                                                                                                {"around", &around},
                                                                                                 {"poses", &posed},
                                                                                                 {"curves", &curved},
                                                                                                 {"bricks", &ids},
                                                                                                 {"changes", &changes}}};
-        std::array<const std::vector<std::uint8_t>*, 7> all{};
+        std::array<const std::vector<std::uint8_t>*, 8> all{};
         for (std::size_t i = 0; i < sections.size(); ++i) {
             all[i] = sections[i].second;
             json["sections"].push_back({{"name", sections[i].first}, {"bytes", all[i]->size()}});

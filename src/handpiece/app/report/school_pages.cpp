@@ -66,6 +66,7 @@ std::string loginPage(const std::string& login, const std::string& wrong) {
     name.complete = "username", password.complete = "current-password";
     name.isRequired = password.isRequired = true;
     page.form({"/login", {name, password}, {{words()("school.log-in")}}});
+    page.link("/first", words()("school-office.have-code"));
     return page.text();
 }
 
@@ -79,9 +80,12 @@ std::string classesPage(const Looker& who, const std::vector<school::SchoolClass
     return page.text();
 }
 
-std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names) {
+std::string classPage(const Looker& who, const school::ClassPage& of, const Names& names,
+                      const std::vector<Cell>& rooms) {
     HtmlReport page = sitePage(of.schoolClass.name, who);
     page.link("/classes/" + of.schoolClass.id + "/live", words()("school-live.watch"));
+    for (const Cell& room : rooms)
+        page.link(room.address, room.text);
     std::vector<std::string> header{words()("class.student")};
     for (const school::Assignment& assignment : of.assignments)
         header.push_back(assignment.title);
@@ -109,6 +113,9 @@ std::string classPage(const Looker& who, const school::ClassPage& of, const Name
         page.paragraph(words()("school.no-students"), Tone::missing);
     else
         page.linkedTable(header, rows, words()("school.class-about"));
+    for (const school::Assignment& assignment : of.assignments)
+        if (assignment.kind == "exam")
+            page.link("/exams/" + assignment.id, words()("school-exam.exam-of", assignment.title));
     return page.text();
 }
 

@@ -32,7 +32,9 @@ using Names = std::map<std::string, std::string>;
 [[nodiscard]] std::string classesPage(const Looker& who, const std::vector<school::SchoolClass>& classes);
 /// Students by their names or codes, a column an assignment: score, whether it is proven, marks; each leads to its
 /// work.
-[[nodiscard]] std::string classPage(const Looker& who, const school::ClassPage& page, const Names& names);
+/// `rooms`: what else there is of this class.
+[[nodiscard]] std::string classPage(const Looker& who, const school::ClassPage& page, const Names& names,
+                                    const std::vector<HtmlReport::Cell>& rooms = {});
 /// All attempts of one person, the newest first.
 [[nodiscard]] std::string personPage(
     const Looker& who, const std::string& person, const Names& names,

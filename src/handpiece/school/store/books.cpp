@@ -19,8 +19,10 @@ namespace {
 
 constexpr Milliseconds kDay = 86'400'000;
 
-std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::string& address,
-                                 std::chrono::milliseconds patience) {
+}  // namespace
+
+std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, const std::string& address,
+                                            std::chrono::milliseconds patience) {
     if (!address.empty()) return std::make_unique<PostgresDatabase>(address, patience);
     const std::filesystem::path file = data / "books.db";
     const bool isNew = !core::isThere(file);
@@ -33,8 +35,11 @@ std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::s
     // Pages are read while stations push; what is deleted is overwritten.
     database->run(
         "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
+    database->keepLogShort();
     return database;
 }
+
+namespace {
 
 /// Safe in an address, a table and a file's name.
 void requireCode(const char* field, const std::string& code) {
@@ -134,7 +139,7 @@ void Books::State::requireClass(const std::string& id) {
 
 Books::Books(const std::filesystem::path& data, const std::string& address, std::chrono::milliseconds patience) {
     core::prepareOutputFolder(data, true);
-    state_.reset(new State{opened(data, address, patience), ContentFiles(data)});
+    state_.reset(new State{openBooksDatabase(data, address, patience), ContentFiles(data)});
     bringUpBooks(*state_->database);
 }
 
@@ -245,7 +250,10 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
-        state_->run("DELETE FROM logins WHERE person = $1", code);
+        for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1",
+                                // What a learning platform calls them.
+                                "DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
+            state_->run(sql, code);
         state_->note(act, "erase", code);
     }
     transaction.commit();
@@ -258,6 +266,9 @@ void Books::addLogin(const std::string& token, const std::string& person, Millis
     Transaction transaction(*state_->database);
     if (!state_->any("SELECT 1 FROM identities WHERE person = $1", person))
         throw unknown(*state_->database, "person", person);
+    if (state_->any("SELECT 1 FROM suspensions WHERE person = $1", person))
+        throw core::Error("this account is suspended", person, "an administrator can open it again")
+            .as("account-suspended", {person});
     state_->run("DELETE FROM logins WHERE person = $1 AND expires <= $2", person, act.at);
     if (!state_->any("INSERT INTO logins (token_hash, person, made, expires) VALUES ($1, $2, $3, $4) "
                      "ON CONFLICT DO NOTHING RETURNING person",
@@ -372,15 +383,19 @@ ClassPage Books::classPage(const std::string& schoolClass) const {
     {
         // How many and which is the last: answered by the index attempts_by_assignment alone.
         Statement rows = state_->ask(
-            "SELECT r.assignment, r.person, r.n, t.id, t.finished, coalesce(s.state, 'provisional'), "
-            "coalesce(s.score, t.score), coalesce(s.max_score, t.max_score), coalesce(s.passed, t.passed), "
-            "coalesce(s.reason, ''), (SELECT count(*) FROM marks m WHERE m.attempt = t.id) "
-            "FROM (SELECT x.assignment, x.person, count(*) AS n FROM assignments a JOIN attempts x ON x.assignment = "
-            "a.id WHERE a.class = $1 GROUP BY x.assignment, x.person) r JOIN attempts t ON t.id = (SELECT l.id FROM "
-            "attempts l WHERE l.assignment = r.assignment AND l.person = r.person ORDER BY l.finished DESC, l.id DESC "
-            "LIMIT 1) "
-            "LEFT JOIN scores s ON s.job = (SELECT max(l.job) FROM scores l WHERE l.attempt = t.id) "
-            "ORDER BY r.assignment, r.person",
+            fmt::format("SELECT r.assignment, r.person, r.n, t.id, t.finished, coalesce(s.state, 'provisional'), "
+                        "coalesce(s.score, t.score), coalesce(s.max_score, t.max_score), coalesce(s.passed, t.passed), "
+                        "coalesce(s.reason, ''), (SELECT count(*) FROM marks m WHERE m.attempt = t.id) "
+                        "FROM (SELECT x.assignment, x.person, count(*) AS n FROM assignments a JOIN attempts x ON "
+                        "x.assignment = "
+                        "a.id WHERE a.class = $1 GROUP BY x.assignment, x.person) r JOIN attempts t ON t.id = (SELECT "
+                        "l.id FROM "
+                        "attempts l WHERE l.assignment = r.assignment AND l.person = r.person ORDER BY l.finished "
+                        "DESC, l.id DESC "
+                        "LIMIT 1) "
+                        "LEFT JOIN scores s ON s.job = {} ORDER BY r.assignment, r.person",
+                        kCountingJob)
+                .c_str(),
             schoolClass);
         while (rows.next())
             page.cells.push_back({rows.text(1), rows.text(0), rows.integer(2), rows.text(3), rows.integer(4),
@@ -391,46 +406,34 @@ ClassPage Books::classPage(const std::string& schoolClass) const {
     return page;
 }
 
-std::int64_t Books::expire(const Act& act) {
-    std::vector<std::string> attempts, orphans;
-    {
-        Transaction transaction(*state_->database);
+std::vector<std::string> Books::State::removeAttempts(const std::vector<std::string>& attempts, const Act& act) {
+    std::vector<std::string> orphans;
+    for (const std::string& id : attempts) {
+        std::vector<std::string> itsFiles;
         {
-            Statement rows = state_->ask(
-                "SELECT t.id FROM classes c JOIN assignments a ON a.class = c.id JOIN attempts t ON t.assignment = "
-                "a.id "
-                "WHERE c.closed > 0 AND c.retention_days > 0 AND c.closed + c.retention_days * 86400000 <= "
-                "CAST($1 AS INT8) ORDER BY t.id",
-                act.at);
+            Statement rows = ask("SELECT file FROM attempt_files WHERE attempt = $1", id);
             while (rows.next())
-                attempts.push_back(rows.text(0));
+                itsFiles.push_back(rows.text(0));
         }
-        for (const std::string& id : attempts) {
-            std::vector<std::string> files;
-            {
-                Statement rows = state_->ask("SELECT file FROM attempt_files WHERE attempt = $1", id);
-                while (rows.next())
-                    files.push_back(rows.text(0));
-            }
-            for (const char* sql :
-                 {"DELETE FROM scores WHERE attempt = $1", "DELETE FROM jobs WHERE attempt = $1",
-                  "DELETE FROM marks WHERE attempt = $1", "DELETE FROM comments WHERE attempt = $1",
-                  "DELETE FROM judgements WHERE attempt = $1", "DELETE FROM shares WHERE attempt = $1",
-                  "DELETE FROM attempt_files WHERE attempt = $1", "DELETE FROM attempts WHERE id = $1"})
-                state_->run(sql, id);
-            for (const std::string& file : files)
-                if (state_->any("DELETE FROM files WHERE hash = $1 AND NOT EXISTS (SELECT 1 FROM attempt_files f "
-                                "WHERE f.file = files.hash) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = "
-                                "files.hash) RETURNING hash",
-                                file))
-                    orphans.push_back(file);
-            state_->note(act, "expire", id);
-        }
-        transaction.commit();
+        // Of an exam: what its station noted stays as a link of the station's chain, without a person.
+        for (const char* sql :
+             {"DELETE FROM scores WHERE attempt = $1", "DELETE FROM jobs WHERE attempt = $1",
+              "DELETE FROM marks WHERE attempt = $1", "DELETE FROM comments WHERE attempt = $1",
+              "DELETE FROM judgements WHERE attempt = $1", "DELETE FROM shares WHERE attempt = $1",
+              "DELETE FROM sheets WHERE attempt = $1", "DELETE FROM releases WHERE attempt = $1",
+              "DELETE FROM calibrations WHERE attempt = $1", "DELETE FROM exemplars WHERE attempt = $1",
+              "DELETE FROM exam_doubts WHERE sitting = $1", "DELETE FROM exam_decisions WHERE sitting = $1",
+              "DELETE FROM exam_sittings WHERE id = $1", "DELETE FROM attempt_files WHERE attempt = $1",
+              "DELETE FROM attempts WHERE id = $1"})
+            run(sql, id);
+        for (const std::string& file : itsFiles)
+            if (any("DELETE FROM files WHERE hash = $1 AND NOT EXISTS (SELECT 1 FROM attempt_files f WHERE f.file = "
+                    "files.hash) AND NOT EXISTS (SELECT 1 FROM packs p WHERE p.file = files.hash) RETURNING hash",
+                    file))
+                orphans.push_back(file);
+        note(act, "expire", id);
     }
-    for (const std::string& file : orphans)
-        state_->removeFile(file);
-    return static_cast<std::int64_t>(attempts.size());
+    return orphans;
 }
 
 // Exercises.

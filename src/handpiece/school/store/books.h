@@ -201,10 +201,6 @@ class Books {
     [[nodiscard]] std::vector<SchoolClass> classes() const;
     [[nodiscard]] std::vector<Enrolment> enrolments(const std::string& schoolClass) const;
     [[nodiscard]] ClassPage classPage(const std::string& schoolClass) const;
-    /// Attempts of closed classes whose time is over go, with all that hangs on them and the files that nobody else
-    /// has. Returns how many.
-    std::int64_t expire(const Act& act);
-
     // Exercises. The same again is no error.
     void add(const RubricVersion& rubric, const Act& act);
     void add(const Pack& pack, const Act& act);
@@ -242,7 +238,7 @@ class Books {
                                                         const std::string& assignment = {}) const;
     /// Another person whose attempt has one of this one's files too: a session is one person's. None: nobody.
     [[nodiscard]] std::optional<std::string> otherPersonWith(const std::string& attempt) const;
-    /// In their order.
+    /// In their order, the one that counts last (Teaching::setCounting; without a choice the last one).
     [[nodiscard]] std::vector<Score> scoresOf(const std::string& attempt) const;
     bool push(const Mark& mark, const Act& act);
     [[nodiscard]] std::vector<Mark> marksOf(const std::string& attempt) const;

@@ -102,18 +102,119 @@ CREATE INDEX logins_by_person ON logins (person);
 )sql",
     // Operation of a server.
     R"sql(
+CREATE TABLE suspensions (person TEXT PRIMARY KEY REFERENCES people (code), made INT8 NOT NULL) STRICT;
+CREATE TABLE password_codes (
+  person TEXT PRIMARY KEY REFERENCES people (code), hash TEXT NOT NULL, expires INT8 NOT NULL) STRICT;
+CREATE TABLE incarnation (id TEXT PRIMARY KEY) STRICT;
 )sql",
     // Teaching: marking, standards, exemplars.
     R"sql(
+CREATE TABLE desks (
+  assignment TEXT NOT NULL REFERENCES assignments (id), marker TEXT NOT NULL REFERENCES people (code),
+  seed TEXT NOT NULL, made INT8 NOT NULL, PRIMARY KEY (assignment, marker)) STRICT;
+CREATE TABLE desk_works (
+  assignment TEXT NOT NULL, marker TEXT NOT NULL, batch INT8 NOT NULL, place INT8 NOT NULL, attempt TEXT NOT NULL,
+  PRIMARY KEY (assignment, marker, batch, place), FOREIGN KEY (assignment, marker) REFERENCES desks) STRICT;
+CREATE TABLE sheets (
+  assignment TEXT NOT NULL, marker TEXT NOT NULL, code TEXT NOT NULL, attempt TEXT NOT NULL REFERENCES attempts (id),
+  content TEXT NOT NULL, is_in INT8 NOT NULL, changed INT8 NOT NULL, PRIMARY KEY (assignment, marker, code),
+  FOREIGN KEY (assignment, marker) REFERENCES desks) STRICT;
+CREATE INDEX sheets_by_attempt ON sheets (attempt);
+CREATE TABLE marking_rules (
+  assignment TEXT PRIMARY KEY REFERENCES assignments (id), differ_percent FLOAT8 NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE releases (attempt TEXT PRIMARY KEY REFERENCES attempts (id), made INT8 NOT NULL) STRICT;
+CREATE TABLE campaigns (
+  id TEXT PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  rubric TEXT NOT NULL REFERENCES rubrics (hash), who TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE INDEX campaigns_by_assignment ON campaigns (assignment);
+CREATE TABLE counting (
+  assignment TEXT PRIMARY KEY REFERENCES assignments (id), campaign TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE estimates (
+  assignment TEXT NOT NULL REFERENCES assignments (id), judge TEXT NOT NULL REFERENCES people (code),
+  round INT8 NOT NULL CHECK (round IN (1, 2)), criterion TEXT NOT NULL, percent FLOAT8 NOT NULL, made INT8 NOT NULL,
+  PRIMARY KEY (assignment, judge, round, criterion)) STRICT;
+CREATE TABLE standards (
+  id TEXT PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  method TEXT NOT NULL CHECK (method IN ('angoff', 'borderline')), content TEXT NOT NULL, who TEXT NOT NULL,
+  made INT8 NOT NULL) STRICT;
+CREATE INDEX standards_by_assignment ON standards (assignment);
+CREATE TABLE exemplars (
+  attempt TEXT PRIMARY KEY REFERENCES attempts (id), assignment TEXT NOT NULL REFERENCES assignments (id),
+  content TEXT NOT NULL, who TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE INDEX exemplars_by_assignment ON exemplars (assignment);
+CREATE TABLE calibrations (
+  attempt TEXT NOT NULL REFERENCES attempts (id), marker TEXT NOT NULL REFERENCES people (code), content TEXT NOT NULL,
+  made INT8 NOT NULL, PRIMARY KEY (attempt, marker)) STRICT;
 )sql",
     // Exams and other systems.
     R"sql(
+CREATE TABLE exam_stations (
+  station TEXT PRIMARY KEY REFERENCES stations (id), key TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE exam_settings (
+  exam TEXT PRIMARY KEY REFERENCES assignments (id), minutes INT8 NOT NULL, locked TEXT NOT NULL) STRICT;
+CREATE TABLE exam_candidates (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), person TEXT NOT NULL REFERENCES people (code),
+  code TEXT NOT NULL, extra_percent INT8 NOT NULL, pause_minutes INT8 NOT NULL, helps TEXT NOT NULL,
+  PRIMARY KEY (exam, person), UNIQUE (exam, code)) STRICT;
+CREATE TABLE exam_codes (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), code TEXT NOT NULL,
+  person TEXT NOT NULL REFERENCES people (code), PRIMARY KEY (exam, code)) STRICT;
+CREATE TABLE exam_invigilators (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), person TEXT NOT NULL REFERENCES people (code),
+  pin TEXT NOT NULL, PRIMARY KEY (exam, person)) STRICT;
+CREATE TABLE exam_packs (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), version INT8 NOT NULL, hash TEXT NOT NULL UNIQUE,
+  text TEXT NOT NULL, key TEXT NOT NULL, signature TEXT NOT NULL, made INT8 NOT NULL,
+  PRIMARY KEY (exam, version)) STRICT;
+CREATE TABLE exam_sittings (
+  id TEXT PRIMARY KEY, exam TEXT NOT NULL REFERENCES exam_settings (exam),
+  station TEXT NOT NULL REFERENCES exam_stations (station), person TEXT NOT NULL REFERENCES people (code),
+  candidate TEXT NOT NULL, pack TEXT NOT NULL, invigilator TEXT NOT NULL, began INT8 NOT NULL, number INT8 NOT NULL,
+  state TEXT NOT NULL CHECK (state IN ('begun', 'given-up', 'finished')), ended INT8 NOT NULL) STRICT;
+CREATE INDEX exam_sittings_by_exam ON exam_sittings (exam, began, id);
+CREATE INDEX exam_sittings_by_person ON exam_sittings (person);
+CREATE TABLE exam_entries (
+  station TEXT NOT NULL REFERENCES exam_stations (station), number INT8 NOT NULL, hash TEXT NOT NULL,
+  kind TEXT NOT NULL, sitting TEXT NOT NULL, text TEXT NOT NULL, key TEXT NOT NULL, signature TEXT NOT NULL,
+  at INT8 NOT NULL, received INT8 NOT NULL, PRIMARY KEY (station, number)) STRICT;
+CREATE TABLE exam_doubts (
+  sitting TEXT PRIMARY KEY REFERENCES exam_sittings (id), doubts TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+CREATE TABLE exam_decisions (
+  id TEXT PRIMARY KEY, sitting TEXT NOT NULL REFERENCES exam_sittings (id),
+  person TEXT NOT NULL REFERENCES people (code),
+  kind TEXT NOT NULL CHECK (kind IN ('confirm', 'appeal', 'remark', 'decide')), verdict TEXT NOT NULL,
+  points FLOAT8 NOT NULL, max_points FLOAT8 NOT NULL, words TEXT NOT NULL, made INT8 NOT NULL, place INT8 NOT NULL,
+  UNIQUE (sitting, place)) STRICT;
+CREATE TABLE retention (scope TEXT PRIMARY KEY, days INT8 NOT NULL) STRICT;
+CREATE TABLE lti_platforms (
+  id TEXT PRIMARY KEY, issuer TEXT NOT NULL, client TEXT NOT NULL, auth_address TEXT NOT NULL,
+  token_address TEXT NOT NULL, keys_address TEXT NOT NULL, deployments TEXT NOT NULL, made INT8 NOT NULL,
+  UNIQUE (issuer, client)) STRICT;
+CREATE TABLE lti_states (
+  hash TEXT PRIMARY KEY, platform TEXT NOT NULL REFERENCES lti_platforms (id), nonce_hash TEXT NOT NULL,
+  expires INT8 NOT NULL) STRICT;
+CREATE TABLE lti_lines (
+  assignment TEXT NOT NULL REFERENCES assignments (id), person TEXT NOT NULL REFERENCES people (code),
+  platform TEXT NOT NULL REFERENCES lti_platforms (id), subject TEXT NOT NULL, address TEXT NOT NULL,
+  PRIMARY KEY (assignment, person)) STRICT;
+CREATE TABLE lti_grades (
+  number INT8 PRIMARY KEY, assignment TEXT NOT NULL REFERENCES assignments (id),
+  person TEXT NOT NULL REFERENCES people (code), platform TEXT NOT NULL REFERENCES lti_platforms (id),
+  subject TEXT NOT NULL, address TEXT NOT NULL, body TEXT NOT NULL, tries INT8 NOT NULL, made INT8 NOT NULL,
+  next INT8 NOT NULL, sent INT8 NOT NULL, problem TEXT NOT NULL) STRICT;
+CREATE INDEX lti_grades_open ON lti_grades (next) WHERE sent = 0;
 )sql",
 };
 
-/// What is written once and never changed, also by whoever comes to the database by another way.
-constexpr std::array<std::string_view, 6> kStays = {"attempts UPDATE", "audit UPDATE",  "audit DELETE",
-                                                    "marks UPDATE",    "scores UPDATE", "rubrics UPDATE"};
+/// What is written once and never changed, also by whoever comes to the database by another way; since which version.
+struct Stays {
+    std::int64_t since;
+    std::string_view what;
+};
+constexpr std::array kStays = {
+    Stays{1, "attempts UPDATE"},   Stays{1, "audit UPDATE"},        Stays{1, "audit DELETE"},
+    Stays{1, "marks UPDATE"},      Stays{1, "scores UPDATE"},       Stays{1, "rubrics UPDATE"},
+    Stays{5, "exam_packs UPDATE"}, Stays{5, "exam_entries UPDATE"}, Stays{5, "exam_decisions UPDATE"}};
 
 std::string replaced(std::string text, std::string_view from, std::string_view to) {
     for (std::size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
@@ -127,13 +228,15 @@ std::string inWordsOf(Database::Engine engine, std::string sql) {
     return replaced(replaced(sql, ") STRICT;", ");"), " TEXT", " TEXT COLLATE \"C\"");
 }
 
-std::string guards(Database::Engine engine) {
+/// Of what came after `version`, until `to`.
+std::string guards(Database::Engine engine, std::int64_t version, std::int64_t to) {
     std::string sql;
-    if (engine == Database::Engine::postgres)
+    if (engine == Database::Engine::postgres && version == 0)
         sql =
             "CREATE FUNCTION handpiece_stays() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
             "RAISE EXCEPTION 'this is never changed'; END $$;";
-    for (const std::string_view stays : kStays) {
+    for (const auto& [since, stays] : kStays) {
+        if (since <= version || since > to) continue;
         const std::string_view table = stays.substr(0, stays.find(' ')), action = stays.substr(stays.find(' ') + 1);
         sql += fmt::format("CREATE TRIGGER {0}_{1}_stays BEFORE {1} ON {0} ", table, action);
         sql += engine == Database::Engine::sqlite ? "BEGIN SELECT RAISE(ABORT, 'this is never changed'); END;"
@@ -172,21 +275,32 @@ std::int64_t versionOf(Database& database) {
 
 }  // namespace
 
+int versionOfBooks(Database& database) {
+    return static_cast<int>(versionOf(database));
+}
+
 void bringUpBooks(Database& database) {
     if (versionOf(database) == Books::kVersion) return;
     Transaction transaction(database);
-    // Asked again now that nobody else can write: two programs may have come to the same old books.
+    // It asks again now that nobody else can write: two programs may have come to the same old books.
+    raiseBooks(database, Books::kVersion);
+    transaction.commit();
+}
+
+void raiseBooks(Database& database, int to) {
     const std::int64_t version = versionOf(database);
+    if (version >= to) return;
     if (version == 0)
         database.run(
             inWordsOf(database.engine(), "CREATE TABLE handpiece_books (version INT8 NOT NULL) STRICT;").c_str());
-    for (std::int64_t next = version; next < Books::kVersion; ++next)
+    for (std::int64_t next = version; next < to; ++next)
         database.run(inWordsOf(database.engine(), kMigrations[static_cast<std::size_t>(next)]).c_str());
-    if (version == 0) database.run(guards(database.engine()).c_str());
+    if (const std::string kept = guards(database.engine(), version, to); !kept.empty()) database.run(kept.c_str());
+    constexpr int kHasIncarnation = 3;
+    if (version < kHasIncarnation && to >= kHasIncarnation)
+        Statement(database, "INSERT INTO incarnation (id) VALUES ($1)").with(newId()).run();
     database.run("DELETE FROM handpiece_books");
-    database.run(
-        fmt::format("INSERT INTO handpiece_books (version) VALUES ({})", static_cast<int>(Books::kVersion)).c_str());
-    transaction.commit();
+    database.run(fmt::format("INSERT INTO handpiece_books (version) VALUES ({})", to).c_str());
 }
 
 }  // namespace handpiece::school

@@ -3,7 +3,9 @@
 /// @file
 /// What the sources of Books share.
 
+#include <chrono>
 #include <concepts>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,8 +17,15 @@
 
 namespace handpiece::school {
 
+/// SQLite in `data`, or PostgreSQL: as it is.
+[[nodiscard]] std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, const std::string& address,
+                                                          std::chrono::milliseconds patience);
 /// Makes new books, brings older ones up; throws for another program's database and for a newer version.
 void bringUpBooks(Database& database);
+/// 0: there are none. Throws as bringUpBooks().
+[[nodiscard]] int versionOfBooks(Database& database);
+/// In a transaction that writes: from the version that they have, or from nothing.
+void raiseBooks(Database& database, int version);
 
 [[nodiscard]] core::Error unknown(const Database& database, const std::string& what, const std::string& which);
 [[nodiscard]] core::Error duplicate(const Database& database, const std::string& what, const std::string& which);
@@ -27,6 +36,12 @@ void bringUpBooks(Database& database);
 void requireText(std::string_view text);
 /// Throws for infinity and what is no number; -0 becomes 0, which SQLite makes of it too.
 [[nodiscard]] double requireNumber(double number);
+
+/// The score of attempt `t` that counts: of the campaign that its assignment counts (Teaching::setCounting), else the
+/// last.
+inline constexpr const char* kCountingJob =
+    "(SELECT l.job FROM scores l LEFT JOIN counting k ON k.assignment = t.assignment AND k.campaign = l.campaign "
+    "WHERE l.attempt = t.id ORDER BY CASE WHEN k.campaign IS NULL THEN 0 ELSE 1 END DESC, l.job DESC LIMIT 1)";
 
 struct Books::State {
     std::unique_ptr<Database> database;
@@ -53,8 +68,13 @@ struct Books::State {
     void requirePerson(const std::string& code);
     void requireAttempt(const std::string& id);
     void requireClass(const std::string& id);
+    /// In a transaction that writes; false: it was there, the same.
+    bool push(const Mark& mark, const Act& act);
     /// In a transaction that writes: attempts that are whole by now wait to be scored.
     void queueArrived(const std::string& attempt, Milliseconds now);
+    /// In a transaction that writes: they go, with all that hangs on them, each with its line in the audit. Returns the
+    /// files that nobody has any more, to be removed when it is committed.
+    [[nodiscard]] std::vector<std::string> removeAttempts(const std::vector<std::string>& attempts, const Act& act);
     void keepFile(const std::string& hash, Milliseconds now);
     /// Of a file that was deleted from the books: unless it came again in the meantime.
     void removeFile(const std::string& hash);

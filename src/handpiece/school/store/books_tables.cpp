@@ -18,12 +18,15 @@ struct Listed {
     const char* order;
     const char* ofPerson;  ///< nullptr: nothing in it is of one person
 };
+#define HANDPIECE_OF_SITTINGS "sitting IN (SELECT id FROM exam_sittings WHERE person = $1)"
 #define HANDPIECE_OF_ATTEMPTS "attempt IN (SELECT id FROM attempts WHERE person = $1)"
 constexpr std::array kListed = {
     Listed{"people", "t code, i made, i erased", "code", "code = $1"},
     Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
     Listed{"roles", "t person, t role", "person, role", "person = $1"},
     Listed{"logins", "t person, i made, i expires", "person, made, expires", "person = $1"},
+    Listed{"suspensions", "t person, i made", "person", "person = $1"},
+    Listed{"password_codes", "t person, i expires", "person", "person = $1"},
     Listed{"classes", "t id, t name, t external, i retention_days, i made, i closed", "id", nullptr},
     Listed{"enrolments", "t class, t person, t role", "class, person", "person = $1"},
     Listed{"files", "t hash, i bytes, i made", "hash", nullptr},
@@ -50,10 +53,53 @@ constexpr std::array kListed = {
            "i job, t attempt, t campaign, t rubric, i engine, t state, t reason, t state_hash, r score, r max_score, "
            "r whole_score, t passed, i borderline, t worker, i made, t result",
            "job", HANDPIECE_OF_ATTEMPTS},
+    Listed{"exam_stations", "t station, t key, i made", "station", nullptr},
+    Listed{"exam_settings", "t exam, i minutes, t locked", "exam", nullptr},
+    Listed{"exam_candidates", "t exam, t person, i extra_percent, i pause_minutes, t helps", "exam, person",
+           "person = $1"},
+    Listed{"exam_codes", "t exam, t code, t person", "exam, code", "person = $1"},
+    Listed{"exam_invigilators", "t exam, t person", "exam, person", "person = $1"},
+    Listed{"exam_packs", "t exam, i version, t hash, t key, t signature, i made", "exam, version", nullptr},
+    Listed{"exam_sittings",
+           "t id, t exam, t station, t person, t candidate, t pack, t invigilator, i began, i number, t state, i ended",
+           "id", "person = $1 OR invigilator = $1"},
+    Listed{"exam_entries",
+           "t station, i number, t hash, t kind, t sitting, t text, t key, t signature, i at, i received",
+           "station, number", HANDPIECE_OF_SITTINGS},
+    Listed{"exam_doubts", "t sitting, t doubts, i made", "sitting", HANDPIECE_OF_SITTINGS},
+    Listed{"exam_decisions",
+           "t id, t sitting, t person, t kind, t verdict, r points, r max_points, t words, i made, i place",
+           "sitting, place", "person = $1 OR " HANDPIECE_OF_SITTINGS},
+    Listed{"retention", "t scope, i days", "scope", nullptr},
+    Listed{"lti_platforms", "t id, t issuer, t client, t auth_address, t token_address, t keys_address, t deployments",
+           "id", nullptr},
+    Listed{"lti_lines", "t assignment, t person, t platform, t subject, t address", "assignment, person",
+           "person = $1"},
+    Listed{"lti_grades",
+           "i number, t assignment, t person, t platform, t subject, t address, t body, i tries, i made, i sent, "
+           "t problem",
+           "number", "person = $1"},
+    Listed{"desks", "t assignment, t marker, t seed, i made", "assignment, marker", "marker = $1"},
+    Listed{"desk_works", "t assignment, t marker, i batch, i place, t attempt", "assignment, marker, batch, place",
+           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+    Listed{"sheets", "t assignment, t marker, t code, t attempt, t content, i is_in, i changed",
+           "assignment, marker, code", "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+    Listed{"marking_rules", "t assignment, r differ_percent, i made", "assignment", nullptr},
+    Listed{"releases", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
+    Listed{"campaigns", "t id, t assignment, t rubric, t who, i made", "id", "who = $1"},
+    Listed{"counting", "t assignment, t campaign, i made", "assignment", nullptr},
+    Listed{"estimates", "t assignment, t judge, i round, t criterion, r percent, i made",
+           "assignment, judge, round, criterion", "judge = $1"},
+    Listed{"standards", "t id, t assignment, t method, t content, t who, i made", "id", "who = $1"},
+    Listed{"exemplars", "t attempt, t assignment, t content, t who, i made", "attempt",
+           "who = $1 OR " HANDPIECE_OF_ATTEMPTS},
+    Listed{"calibrations", "t attempt, t marker, t content, i made", "attempt, marker",
+           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
     Listed{"audit", "i number, i at, t who, t what, t about, t detail", "number",
            "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)"},
 };
 #undef HANDPIECE_OF_ATTEMPTS
+#undef HANDPIECE_OF_SITTINGS
 
 BookTable read(Database& database, const Listed& listed, const std::string* person) {
     BookTable table{listed.table, {}, {}};

@@ -254,7 +254,9 @@ std::vector<Score> Books::scoresOf(const std::string& attempt) const {
     std::vector<Score> all;
     Statement rows = state_->ask(
         "SELECT attempt, campaign, rubric, engine, state, reason, state_hash, score, max_score, whole_score, passed, "
-        "borderline, result, worker, made FROM scores WHERE attempt = $1 ORDER BY job",
+        "borderline, result, worker, made FROM scores s WHERE attempt = $1 ORDER BY CASE WHEN EXISTS (SELECT 1 FROM "
+        "attempts t JOIN counting k ON k.assignment = t.assignment WHERE t.id = $1 AND k.campaign = s.campaign) THEN 1 "
+        "ELSE 0 END, job",
         attempt);
     while (rows.next())
         all.push_back({rows.text(0), rows.text(1), rows.text(2), rows.integer(3), rows.text(4), rows.text(5),
@@ -263,26 +265,31 @@ std::vector<Score> Books::scoresOf(const std::string& attempt) const {
     return all;
 }
 
-bool Books::push(const Mark& m, const Act& act) {
+bool Books::State::push(const Mark& m, const Act& act) {
     requireId("id of a mark", m.id);
     constexpr std::array kKinds = {"teacher", "examiner", "blind", "adjudication"};
     if (std::find(kKinds.begin(), kKinds.end(), m.kind) == kKinds.end())
         throw invalid("kind of mark", m.kind, "send teacher, examiner, blind or adjudication");
-    Transaction transaction(*state_->database);
-    state_->requireAttempt(m.attempt);
-    state_->requirePerson(m.marker);
-    const bool isNew = state_->any(
-        "INSERT INTO marks (id, attempt, marker, kind, verdict, points, max_points, marks, "
-        "made) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING "
-        "RETURNING id",
-        m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made);
+    requireAttempt(m.attempt);
+    requirePerson(m.marker);
+    const bool isNew =
+        any("INSERT INTO marks (id, attempt, marker, kind, verdict, points, max_points, marks, "
+            "made) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT DO NOTHING "
+            "RETURNING id",
+            m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made);
     if (isNew)
-        state_->note(act, "mark", m.attempt, m.kind);
-    else if (!state_->any("SELECT 1 FROM marks WHERE id = $1 AND attempt = $2 AND marker = $3 AND kind = $4 AND "
-                          "verdict = $5 AND points = CAST($6 AS FLOAT8) AND max_points = CAST($7 AS FLOAT8) AND "
-                          "marks = $8 AND made = $9",
-                          m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made))
-        throw changed(*state_->database, "mark", m.id);
+        note(act, "mark", m.attempt, m.kind);
+    else if (!any("SELECT 1 FROM marks WHERE id = $1 AND attempt = $2 AND marker = $3 AND kind = $4 AND "
+                  "verdict = $5 AND points = CAST($6 AS FLOAT8) AND max_points = CAST($7 AS FLOAT8) AND "
+                  "marks = $8 AND made = $9",
+                  m.id, m.attempt, m.marker, m.kind, m.verdict, m.points, m.maxPoints, m.marks, m.made))
+        throw changed(*database, "mark", m.id);
+    return isNew;
+}
+
+bool Books::push(const Mark& m, const Act& act) {
+    Transaction transaction(*state_->database);
+    const bool isNew = state_->push(m, act);
     transaction.commit();
     return isNew;
 }

@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/exam_service.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <condition_variable>
+#include <fstream>
+#include <mutex>
+#include <thread>
+
+#include "handpiece/app/assessment/score_work.h"
+#include "handpiece/assess/task/task.h"
+#include "handpiece/base/core/any_error.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/school/exam/invigilation.h"
+#include "handpiece/school/exam/lines.h"
+#include "handpiece/school/store/content_files.h"
+#include "school/answers.h"
+#include "school/exam_desk.h"
+#include "school/exam_station.h"
+#include "school/wire.h"
+
+namespace handpiece::school_exam {
+namespace {
+
+namespace fs = std::filesystem;
+using httplib::Request;
+using httplib::Response;
+
+constexpr std::size_t kMostRecording = std::size_t{1} << 30;
+
+/// Held while the service lives; the system lets it go with the process.
+class OneService {
+  public:
+    explicit OneService(const fs::path& folder) {
+        core::prepareOutputFolder(folder, true);
+        file_ = ::open((folder / "service.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, S_IRUSR | S_IWUSR);
+        if (file_ >= 0 && ::flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+        if (file_ >= 0) ::close(file_);
+        throw core::Error("another service works with these exams, or the folder is not its user's", folder.string(),
+                          "one is enough: leave it running")
+            .as("exam-busy");
+    }
+    ~OneService() { ::close(file_); }
+    OneService(const OneService&) = delete;
+    OneService& operator=(const OneService&) = delete;
+
+  private:
+    int file_ = -1;
+};
+
+}  // namespace
+
+struct ExamService::State {
+    State(ExamServiceSettings s, school_server::Clock c)
+        : settings(std::move(s)), clock(std::move(c)), one(settings.folder), exams(settings.folder, clock()) {
+        configure();
+        std::error_code none;
+        fs::remove(settings.socket, none);
+        http.set_address_family(AF_UNIX);
+        // The port means nothing to a socket of this machine.
+        if (!http.bind_to_port(settings.socket.string(), 80))
+            throw core::Error("nobody can listen there", settings.socket.string(),
+                              "name a socket in a folder that this user may write to")
+                .as("port-taken", {settings.socket.string(), ""});
+        // Every account of this machine may speak to it: what it does hangs on codes.
+        ::chmod(settings.socket.c_str(), 0666);
+    }
+    ~State() {
+        std::error_code none;
+        fs::remove(settings.socket, none);
+    }
+
+    void configure() {
+        http.set_payload_max_length(kMostRecording);
+        http.set_read_timeout(std::chrono::seconds(20));
+        http.set_exception_handler([](const Request&, Response& response, std::exception_ptr thrown) {
+            try {
+                std::rethrow_exception(thrown);
+            } catch (const std::exception& e) {
+                const core::Error error = core::asError(e);
+                response.status = 400;
+                response.set_content(school_wire::toJson(error), "application/json");
+            }
+        });
+        const auto on = [this](auto work) {
+            return [this, work](const Request& request, Response& response) {
+                const std::lock_guard lock(mutex);
+                response.set_content(work(request), "text/plain; charset=utf-8");
+            };
+        };
+        http.Get("/desk", on([this](const Request&) { return toText(desk()); }));
+        http.Get("/exercise", on([this](const Request&) {
+                     if (!exams.sitting())
+                         throw core::Error("nobody is at an exam here", settings.folder.string(), "begin it")
+                             .as("exam-none", {""});
+                     const std::vector<std::byte> bytes = core::readFile(exams.sitting()->exam.exercise);
+                     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                 }));
+        http.Post("/begin", on([this](const Request& r) {
+                      (void)exams.begin(field(r, "candidate"), field(r, "invigilator"), field(r, "pin"),
+                                        exam::kRubricFormat, clock());
+                      wake();
+                      return toText(desk());
+                  }));
+        http.Post("/checkpoint", on([this](const Request& r) {
+                      exams.checkpoint(field(r, "sitting"), number(r, "part"), number(r, "ticks"), field(r, "inputs"),
+                                       clock());
+                      return std::string();
+                  }));
+        http.Put("/recording", [this](const Request& r, Response& response, const httplib::ContentReader& read) {
+            take(r, response, read);
+        });
+        http.Post("/finish", on([this](const Request& r) {
+                      const std::string id = field(r, "sitting");
+                      const std::int64_t parts = number(r, "parts");
+                      if (parts < 1 || parts > 100)
+                          throw core::Error("there is no recording to hand over", id, "name the session's file")
+                              .as("exam-damaged", {"parts", ""});
+                      std::vector<std::string> works;
+                      for (std::int64_t part = 1; part <= parts; ++part)
+                          works.push_back(assessment::workHash(exams.placeFor(id, part)));
+                      const exam::Signed entry = exams.finish(id, works, clock());
+                      wake();
+                      return exam::joined(entry);
+                  }));
+        http.Post("/give-up", on([this](const Request& r) {
+                      exams.giveUp(field(r, "sitting"), field(r, "invigilator"), field(r, "pin"), clock());
+                      wake();
+                      return std::string();
+                  }));
+    }
+
+    static std::string field(const Request& request, const char* name) {
+        std::string value = request.get_param_value(name);
+        if (value.size() > 200)
+            throw core::Error("this is too long", name, "use programs that belong together")
+                .as("exam-damaged", {name, ""});
+        return value;
+    }
+    static std::int64_t number(const Request& request, const char* name) {
+        return static_cast<std::int64_t>(school_server::numberOf(request, name) & ((std::uint64_t{1} << 53) - 1));
+    }
+    /// Beside its place first: what was cut off is none.
+    void take(const Request& request, Response& response, const httplib::ContentReader& read) {
+        fs::path place;
+        {
+            const std::lock_guard lock(mutex);
+            place = exams.placeFor(field(request, "sitting"), number(request, "part"));
+        }
+        const fs::path coming = place.string() + "." + school::newId();
+        std::error_code none;
+        {
+            const core::FileStream file = core::createOwnFile(coming);
+            bool isWell = file != nullptr;
+            read([&](const char* bytes, std::size_t count) {
+                return isWell = isWell && std::fwrite(bytes, 1, count, file.get()) == count;
+            });
+            isWell = isWell && std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
+            if (!isWell) {
+                fs::remove(coming, none);
+                throw core::Error("the recording could not be kept here", place.string(),
+                                  "free some room; the file stays where it was")
+                    .as("no-space", {});
+            }
+        }
+        fs::rename(coming, place);
+        response.set_content("", "text/plain");
+    }
+
+    Desk desk() const {
+        Desk d;
+        d.now = clock(), d.waiting = waiting, d.trouble = trouble;
+        if (const auto& s = exams.sitting()) {
+            d.sitting = s->id, d.exam = s->exam.pack.exam, d.title = s->exam.pack.title;
+            d.began = s->began, d.deadline = s->deadline, d.again = s->again;
+            const tasks::Task task = tasks::readTask(s->exam.exercise);
+            d.locked = exam::lockedFor(
+                s->exam.pack, s->candidate,
+                task.toothCase.exercise ? task.toothCase.exercise->lockedHelps : std::vector<std::string>{});
+        }
+        return d;
+    }
+
+    void wake() {
+        hasNews = true;
+        news.notify_all();
+    }
+    void tellServer() {
+        while (!ends) {
+            std::string why;
+            try {
+                const Fetched fetched = fetchExams(settings.folder);
+                if (!fetched.problems.empty()) why = fetched.problems.front();
+                (void)pushExams(
+                    exams.identity(),
+                    [this](std::int64_t number, std::size_t most) {
+                        const std::lock_guard lock(mutex);
+                        return exams.entriesAfter(number, most);
+                    },
+                    [this](const std::string& sha256) { return fileOf(sha256); });
+                const std::lock_guard lock(mutex);
+                waiting = 0;
+            } catch (const std::exception& e) {
+                why = core::asError(e).what();
+                const std::lock_guard lock(mutex);
+                ++waiting;
+            }
+            std::unique_lock lock(mutex);
+            trouble = why;
+            news.wait_for(lock, settings.every, [this] { return ends || hasNews; });
+            hasNews = false;
+        }
+    }
+    fs::path fileOf(const std::string& sha256) const {
+        std::error_code none;
+        for (fs::recursive_directory_iterator at(settings.folder / "sessions", none), end; !none && at != end;
+             at.increment(none))
+            if (at->path().extension() == ".h5" && school::sha256Of(at->path()) == sha256) return at->path();
+        return {};
+    }
+
+    const ExamServiceSettings settings;
+    const school_server::Clock clock;
+    const OneService one;
+    std::mutex mutex;
+    exam::Invigilation exams;  ///< guarded by `mutex`
+    std::int64_t waiting = 0;
+    std::string trouble;
+    std::condition_variable news;
+    bool hasNews = false;
+    std::atomic<bool> ends{false};
+    httplib::Server http;
+    std::thread teller;
+};
+
+ExamService::ExamService(ExamServiceSettings settings, school_server::Clock clock)
+    : state_(std::make_unique<State>(std::move(settings), std::move(clock))) {}
+ExamService::~ExamService() {
+    stop();
+    if (state_->teller.joinable()) state_->teller.join();
+}
+
+void ExamService::run() {
+    state_->teller = std::thread([this] { state_->tellServer(); });
+    state_->http.listen_after_bind();
+    stop();
+    state_->teller.join();
+}
+
+void ExamService::stop() {
+    {
+        const std::lock_guard lock(state_->mutex);
+        state_->ends = true;
+    }
+    state_->news.notify_all();
+    state_->http.stop();
+}
+
+}  // namespace handpiece::school_exam

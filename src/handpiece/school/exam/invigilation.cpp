@@ -1,0 +1,293 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/school/exam/invigilation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+#include <utility>
+
+#include "handpiece/base/core/engine_revision.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/school/exam/lines.h"
+#include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/content_files.h"
+
+namespace handpiece::exam {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kStationKind = "handpiece exam station 1";
+constexpr std::size_t kMostPackBytes = 1 << 20, kMostEntryBytes = 1 << 16;
+
+std::string textOf(const fs::path& file, std::size_t most) {
+    const std::vector<std::byte> bytes = core::readFile(file, most);
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+fs::path packFolder(const fs::path& folder, const std::string& exam) {
+    return folder / "packs" / exam;
+}
+fs::path exerciseFile(const fs::path& folder, const std::string& sha256) {
+    return folder / "exercises" / (sha256 + ".handpiece");
+}
+fs::path entryFile(const fs::path& folder, std::int64_t number) {
+    return folder / "chain" / fmt::format("{:010}.txt", number);
+}
+
+}  // namespace
+
+StationIdentity stationIn(const fs::path& folder) {
+    const fs::path file = folder / "station.txt";
+    if (!core::isThere(file))
+        throw core::Error("exams are not set up at this station", file.string(),
+                          "as the service's user: handpiece school exam enrol SERVER CODE --service FOLDER")
+            .as("not-enrolled");
+    const std::string text = textOf(file, 4096);
+    LineReader lines(text, kStationKind, file.string());
+    StationIdentity identity;
+    identity.server = lines.text("server", 1000), identity.station = lines.hex("station", 32);
+    identity.key = lines.hex("key", 64), identity.serverKey = lines.hex("server_key", 64);
+    lines.end();
+    return identity;
+}
+
+void keepStation(const StationIdentity& s, const fs::path& folder) {
+    LineWriter lines(kStationKind);
+    lines.add("server", s.server).add("station", s.station).add("key", s.key).add("server_key", s.serverKey);
+    core::prepareOutputFolder(folder, true);
+    core::writeFile(folder / "station.txt", lines.text(), {.ownerOnly = true});
+}
+
+bool hasExercise(const fs::path& folder, const std::string& sha256) {
+    return school::isHex(sha256, 64) && core::isThere(exerciseFile(folder, sha256));
+}
+
+Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::path& exercise) {
+    const StationIdentity station = stationIn(folder);
+    Pack pack = openedPack(signedPack, station.serverKey, "the exam's pack");
+    const fs::path in = packFolder(folder, pack.exam);
+    if (core::isThere(in / "pack.txt")) {
+        const Pack there = packFrom(textOf(in / "pack.txt", kMostPackBytes), in.string());
+        if (there.version > pack.version)
+            throw core::Error(
+                fmt::format("this pack is of version {}, and version {} is here already", pack.version, there.version),
+                pack.exam, "nothing is to be done: the newer one holds")
+                .as("exam-older", {std::to_string(pack.version), std::to_string(there.version)});
+    }
+    if (!exercise.empty()) {
+        if (const std::string hash = school::sha256Of(exercise); hash != pack.file)
+            throw core::Error("the exam's exercise is not the one that its pack names", exercise.string(),
+                              "fetch it again from the school's server")
+                .as("exam-exercise-other", {hash, pack.file});
+        core::prepareOutputFolder(folder / "exercises", true);
+        fs::rename(exercise, exerciseFile(folder, pack.file));
+    } else if (!hasExercise(folder, pack.file)) {
+        throw core::Error("the exam's exercise is not here", pack.exam, "fetch it from the school's server")
+            .as("exam-exercise-other", {"", pack.file});
+    }
+    core::prepareOutputFolder(folder / "packs", true);
+    core::prepareOutputFolder(in, true);
+    // The text last: a pack whose signature is that of another text is none, and is fetched again.
+    core::writeFile(in / "pack.sig", toText(signedPack.signature), {.ownerOnly = true});
+    core::writeFile(in / "pack.txt", signedPack.text, {.ownerOnly = true});
+    return pack;
+}
+
+std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>& problems) {
+    const StationIdentity station = stationIn(folder);
+    std::vector<fs::path> folders;
+    std::error_code none;
+    for (fs::directory_iterator entry(folder / "packs", none), end; !none && entry != end; entry.increment(none))
+        folders.push_back(entry->path());
+    std::sort(folders.begin(), folders.end());
+    std::vector<Installed> all;
+    for (const fs::path& in : folders)
+        try {
+            Installed one;
+            one.text.text = textOf(in / "pack.txt", kMostPackBytes);
+            one.text.signature = signatureFrom(textOf(in / "pack.sig", 4096), (in / "pack.sig").string());
+            one.pack = openedPack(one.text, station.serverKey, (in / "pack.txt").string());
+            one.exercise = exerciseFile(folder, one.pack.file);
+            // What was written there since is no exam's exercise.
+            if (!core::isThere(one.exercise) || school::sha256Of(one.exercise) != one.pack.file)
+                throw core::Error("the exam's exercise is not the one that its pack names", one.exercise.string(),
+                                  "fetch it again from the school's server")
+                    .as("exam-exercise-other");
+            all.push_back(std::move(one));
+        } catch (const core::Error& e) {
+            problems.emplace_back(e.what());
+        }
+    return all;
+}
+
+Invigilation::Invigilation(fs::path folder, Milliseconds now)
+    : folder_(std::move(folder)), identity_(stationIn(folder_)) {
+    key_ = keptSigningKey(folder_ / "station.key");
+    core::prepareOutputFolder(folder_ / "chain", true);
+    for (std::int64_t next = 1; core::isThere(entryFile(folder_, next)); ++next) {
+        const fs::path file = entryFile(folder_, next);
+        const Signed entry = parted(textOf(file, kMostEntryBytes), file.string());
+        const Entry read = nextOf(end_, entry, identity_.station, key_.open);
+        end_ = {next, hashOfEntry(entry.text)};
+        follow(read);
+    }
+    Entry started;
+    started.at = now, started.kind = "started";
+    (void)add(std::move(started));
+}
+
+Signed Invigilation::add(Entry entry) {
+    entry.station = identity_.station, entry.number = end_.number + 1, entry.previous = end_.hash;
+    const std::string text = toText(entry);
+    Signed made{text, signatureOf(text, key_)};
+    if (core::isThere(entryFile(folder_, entry.number)))
+        throw core::Error("another service works with these exams", folder_.string(), "one is enough: end this one")
+            .as("exam-busy");
+    core::writeFile(entryFile(folder_, entry.number), joined(made), {.ownerOnly = true});
+    end_ = {entry.number, hashOfEntry(text)};
+    follow(entry);
+    return made;
+}
+
+void Invigilation::follow(const Entry& e) {
+    if (e.kind == "begun") {
+        begun_.emplace_back(e.exam, e.candidate);
+        Sitting sitting;
+        sitting.id = e.sitting, sitting.began = e.at, sitting.again = e.again;
+        std::vector<std::string> problems;
+        for (Installed& one : packsIn(folder_, problems))
+            if (one.pack.exam == e.exam) {
+                for (const Candidate& c : one.pack.candidates)
+                    if (c.code == e.candidate) sitting.candidate = c;
+                sitting.deadline = deadlineOf(one.pack, sitting.candidate, e.at);
+                sitting.exam = std::move(one);
+            }
+        sitting_ = std::move(sitting);
+    } else if (e.kind == "finished" || e.kind == "given-up") {
+        sitting_.reset();
+    }
+}
+
+void Invigilation::requireInvigilator(const Pack& pack, const std::string& person, const std::string& pin,
+                                      Milliseconds now) {
+    if (const std::int64_t wait = guesses_.waitMs(person, now); wait > 0)
+        throw core::Error(fmt::format("too many wrong confirmation codes: wait {} s", (wait + 999) / 1000), person,
+                          "then try again")
+            .as("exam-wait", {std::to_string((wait + 999) / 1000)});
+    guesses_.failed(person, now);
+    const auto found = std::find_if(pack.invigilators.begin(), pack.invigilators.end(),
+                                    [&](const Invigilator& one) { return one.person == person; });
+    if (found == pack.invigilators.end() || !school::isPassword(found->pin, school::typedStationCode(pin)))
+        throw core::Error("nobody who may confirm a candidate's identity at this exam has this code", person,
+                          "an invigilator of this exam types their own code and confirmation code")
+            .as("exam-invigilator", {person});
+    guesses_.succeeded(person);
+}
+
+const Sitting& Invigilation::begin(const std::string& candidateCode, const std::string& invigilator,
+                                   const std::string& pin, std::int64_t rubricFormat, Milliseconds now) {
+    if (sitting_)
+        throw core::Error("somebody is at an exam at this station", sitting_->id,
+                          "hand that work over first, or let an invigilator give it up")
+            .as("exam-running", {sitting_->id});
+    std::vector<std::string> problems;
+    const std::vector<Installed> all = packsIn(folder_, problems);
+    const Installed* mine = nullptr;
+    for (const Installed& one : all)
+        for (const Candidate& c : one.pack.candidates)
+            if (c.code == candidateHash(one.pack.exam, candidateCode)) mine = &one;
+    if (mine == nullptr)
+        throw core::Error(all.empty() && !problems.empty()
+                              ? "none of the exams at this station can be used: " + problems.front()
+                              : std::string("no exam at this station knows a candidate of this code"),
+                          folder_.string(),
+                          "type it as it stands on the slip; who came later needs a newer pack: handpiece school exam "
+                          "fetch")
+            .as("exam-candidate-unknown", {""});
+    const Pack& pack = mine->pack;
+    requireFitting(pack, rubricFormat, core::kEngineRevision);
+    requireOpen(pack, now);
+    requireInvigilator(pack, invigilator, pin, now);
+    Entry e;
+    e.at = now, e.kind = "begun", e.sitting = school::newId();
+    e.exam = pack.exam, e.pack = school::sha256(mine->text.text);
+    e.candidate = candidateHash(pack.exam, candidateCode), e.invigilator = invigilator;
+    e.again = std::count(begun_.begin(), begun_.end(), std::pair(e.exam, e.candidate));
+    (void)add(std::move(e));
+    return *sitting_;
+}
+
+const Sitting& Invigilation::current(const std::string& id) const {
+    if (!sitting_ || sitting_->id != id)
+        throw core::Error("nobody is at this exam at this station now", id.substr(0, 40),
+                          "begin it: handpiece school exam begin")
+            .as("exam-none", {id.substr(0, 40)});
+    return *sitting_;
+}
+
+void Invigilation::checkpoint(const std::string& id, std::int64_t part, std::int64_t ticks, const std::string& inputs,
+                              Milliseconds now) {
+    (void)current(id);
+    Entry e;
+    e.at = now, e.kind = "checkpoint", e.sitting = id, e.part = part, e.ticks = ticks, e.inputs = inputs;
+    // Only what can be read is signed.
+    e.station = identity_.station, e.number = 1, e.previous = kNoEntry;
+    (void)entryFrom(toText(e), "checkpoint");
+    (void)add(std::move(e));
+}
+
+fs::path Invigilation::placeFor(const std::string& id, std::int64_t part) const {
+    (void)current(id);
+    if (part < 1 || part > 100)
+        throw core::Error("there is no such recording", std::to_string(part), "count them from 1")
+            .as("exam-damaged", {"part", ""});
+    core::prepareOutputFolder(folder_ / "sessions", true);
+    core::prepareOutputFolder(folder_ / "sessions" / id, true);
+    return folder_ / "sessions" / id / fmt::format("{:03}.h5", part);
+}
+
+Signed Invigilation::finish(const std::string& id, const std::vector<std::string>& works, Milliseconds now) {
+    (void)current(id);
+    Entry e;
+    e.at = now, e.kind = "finished", e.sitting = id;
+    for (std::size_t i = 0; i < works.size(); ++i) {
+        const fs::path file = placeFor(id, static_cast<std::int64_t>(i + 1));
+        if (!core::isThere(file))
+            throw core::Error(fmt::format("recording {} has not been handed over", i + 1), file.string(),
+                              "hand all of them over, in their order")
+                .as("exam-damaged", {"file", ""});
+        e.files.push_back({school::sha256Of(file), works[i], static_cast<std::int64_t>(fs::file_size(file))});
+    }
+    e.station = identity_.station, e.number = 1, e.previous = kNoEntry;
+    (void)entryFrom(toText(e), "finished");
+    return add(std::move(e));
+}
+
+void Invigilation::giveUp(const std::string& id, const std::string& invigilator, const std::string& pin,
+                          Milliseconds now) {
+    requireInvigilator(current(id).exam.pack, invigilator, pin, now);
+    Entry e;
+    e.at = now, e.kind = "given-up", e.sitting = id, e.invigilator = invigilator;
+    (void)add(std::move(e));
+}
+
+std::vector<Signed> Invigilation::entriesAfter(std::int64_t number, std::size_t most) const {
+    std::vector<Signed> all;
+    for (std::int64_t next = number + 1; next <= end_.number && all.size() < most; ++next)
+        all.push_back(parted(textOf(entryFile(folder_, next), kMostEntryBytes), entryFile(folder_, next).string()));
+    return all;
+}
+
+fs::path Invigilation::fileOf(const std::string& sitting, const std::string& sha256) const {
+    if (!school::isHex(sitting, 32)) return {};
+    std::error_code none;
+    for (fs::directory_iterator entry(folder_ / "sessions" / sitting, none), end; !none && entry != end;
+         entry.increment(none))
+        if (entry->path().extension() == ".h5" && school::sha256Of(entry->path()) == sha256) return entry->path();
+    return {};
+}
+
+}  // namespace handpiece::exam

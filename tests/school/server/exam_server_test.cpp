@@ -1,0 +1,434 @@
+// SPDX-License-Identifier: Apache-2.0
+// An exam from its making to the appeal, over real HTTP, and what was tried against it: each attack that
+// docs/school-exams.md says is stopped.
+#include <atomic>
+
+#include "handpiece/app/proving/exam_check.h"
+#include "handpiece/record/session/recorder.h"
+#include "handpiece/school/people/secret.h"
+#include "school/exam_arrival.h"
+#include "school/exam_desk.h"
+#include "school/exam_service.h"
+#include "school/exam_station.h"
+#include "school/server/browser.h"
+#include "school/server/school_fixture.h"
+#include "school/worker.h"
+#include "support/error_of.h"
+
+namespace handpiece::school_exam {
+namespace {
+
+using school_server::School;
+using school_server::session;
+using test::errorIdOf;
+using test::errorOf;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::SizeIs;
+namespace fs = std::filesystem;
+using school::Act;
+using school::Books;
+using school::ExamBooks;
+
+const std::string kPin = "PPP-QQQ-RRR-SSS", kCandidate = "123-456-789-ABC", kOther = "ABC-456-789-ABC";
+using school_server::kPassword;
+constexpr const char* kExamCode = "ABC-DEF-GHJ-KMR";
+
+/// A station's service in a thread.
+class Service {
+  public:
+    explicit Service(const fs::path& folder, std::chrono::milliseconds every = std::chrono::milliseconds(50))
+        : socket_(folder.string() + ".sock"), service_({folder, socket_, every}) {
+        thread_ = std::thread([this] { service_.run(); });
+        while (!errorIdOf([&] { (void)client().desk(); }).empty())
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    ~Service() { stop(); }
+    void stop() {
+        service_.stop();
+        if (thread_.joinable()) thread_.join();
+    }
+    [[nodiscard]] ExamClient client() const { return ExamClient(socket_); }
+
+  private:
+    fs::path socket_;
+    ExamService service_;
+    std::thread thread_;
+};
+
+template <class Condition>
+bool soon(Condition isSo) {
+    for (int i = 0; i < 4000; ++i) {
+        if (isSo()) return true;
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+    return false;
+}
+
+class ExamTest : public school_server::SchoolTest {
+  protected:
+    void SetUp() override {
+        SchoolTest::SetUp();
+        Books open(data());
+        const Act act{"server", 1};
+        const std::string hash = school::hashOfPassword(kPassword);
+        const auto person = [&](const char* code, const char* name, const char* role) {
+            return school::Person{code, name, code, "", hash, {role}, 1, 0};
+        };
+        const std::vector<school::Person> people{
+            person("t1", "Dr. Sato", "teacher"), person("t2", "Dr. Abe", "teacher"),
+            person("e1", "Dr. Mori", "examiner"), person("s018", "Jun", "student")};
+        open.add(people, act);
+        open.setPassword("s017", hash, act);
+        open.add(school::SchoolClass{"c1", "Operative", "", 0, 1, 0}, act);
+        const std::vector<school::Enrolment> in{
+            {"c1", "s017", "student"}, {"c1", "s018", "student"}, {"c1", "t1", "teacher"}, {"c1", "e1", "examiner"}};
+        open.enrol(in, act);
+        const std::string exercise = rubric::hashText(tasks::contentHash(school_server::blockTask()));
+        now_ = school_server::systemClock()();
+        open.add(school::Assignment{"ex1", "c1", exercise, open.pack(exercise)->rubric, "Block exam", "exam", "",
+                                    now_ - 3'600'000, now_ + 3'600'000},
+                 act);
+        ExamBooks exams(open);
+        exams.set(school::ExamSettings{"ex1", 30, "undo reset"}, act);
+        exams.set(school::ExamCandidate{"ex1", "s017", exam::candidateHash("ex1", kCandidate), 25, 0, ""}, act);
+        exams.set(school::ExamCandidate{"ex1", "s018", exam::candidateHash("ex1", kOther), 0, 0, ""}, act);
+        exams.set(school::ExamInvigilator{"ex1", "t1", pinHash()}, act);
+        (void)school_server::signExam(open, "ex1", school_server::examKey(data()), act);
+        open.offerCode(kExamCode, "exam room, 1", 4'000'000'000'000, act);
+    }
+    static const std::string& pinHash() {
+        static const std::string hash = school::hashOfPassword(kPin);
+        return hash;
+    }
+    [[nodiscard]] fs::path service() const { return folder_.path() / "exam"; }
+    void setUpStation(const School& school) const {
+        enrolForExams(school.address(), kExamCode, service());
+        EXPECT_THAT(fetchExams(service()).packs, SizeIs(1));
+    }
+    /// From the beginning to what the server made of it.
+    std::string sit(const Service& at, const fs::path& recording, const std::string& code = kCandidate) {
+        const std::string sitting = at.client().begin(code, "t1", kPin).sitting;
+        (void)at.client().finish(sitting, {recording});
+        return sitting;
+    }
+    [[nodiscard]] bool hasArrived(const std::string& sitting) const {
+        Books open(data());
+        const auto attempt = open.attempt(sitting);
+        return attempt && open.missingFiles(attempt->station).empty();
+    }
+    void prove() const {
+        school_server::Worker worker({data()}, school_server::systemClock());
+        while (worker.workOnce()) {
+        }
+    }
+    [[nodiscard]] std::vector<std::string> doubts(const std::string& sitting) const {
+        Books open(data());
+        return school_server::doubtsOf(open, *ExamBooks(open).sitting(sitting));
+    }
+    /// A hand that was made up, at 1 kHz.
+    static fs::path madeUp(const fs::path& file, int seconds, int seed, bool undoes = false) {
+        session::Recorder recorder(file, {1000, "child", "test", "{}", {}});
+        for (int i = 0; i < 1000 * seconds; ++i) {
+            session::Record record;
+            record.tick = static_cast<std::uint64_t>(i);
+            record.position = {seed * i, i, -i};
+            recorder.pushWaiting(record);
+        }
+        if (undoes) recorder.event(1500, session::EventName::undo);
+        recorder.close();
+        return file;
+    }
+
+    school::Milliseconds now_ = 0;
+};
+
+TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
+    std::string sitting;
+    int port = 0;
+    {
+        School school(data());
+        port = school.port();
+        setUpStation(school);
+        EXPECT_THAT(fetchExams(service()).packs, IsEmpty()) << "it is here already";
+    }
+    // The network is gone.
+    {
+        const Service at(service());
+        const Desk desk = at.client().begin(kCandidate, "t1", kPin);
+        EXPECT_EQ(desk.title, "Block exam");
+        EXPECT_EQ(desk.deadline - desk.began, 37 * 60'000 + 30'000) << "with a quarter more time";
+        EXPECT_THAT(desk.locked, ElementsAre("undo", "reset"));
+        const fs::path exercise = folder_.path() / "exercise.handpiece";
+        at.client().keepExercise(exercise);
+        EXPECT_EQ(tasks::contentHash(tasks::readTask(exercise)), tasks::contentHash(school_server::blockTask()));
+        sitting = desk.sitting;
+        const exam::Signed entry = exam::parted(at.client().finish(sitting, {session()}), "");
+        EXPECT_EQ(exam::entryFrom(entry.text, "").files.front().file, school::sha256Of(session()));
+        EXPECT_TRUE(soon([&] { return !at.client().desk().trouble.empty(); }));
+        EXPECT_THAT(at.client().desk().trouble, HasSubstr("nobody answers there"));
+        EXPECT_TRUE(at.client().desk().sitting.empty());
+    }
+    School school(data(), 0, port);
+    const Service at(service());
+    ASSERT_TRUE(soon([&] { return hasArrived(sitting); })) << at.client().desk().trouble;
+    prove();
+    EXPECT_EQ(scoresOf(sitting).back().state, "proven") << scoresOf(sitting).back().reason;
+    EXPECT_EQ(scoresOf(sitting).back().reason, "") << "a station that says no score says no other one";
+    EXPECT_EQ(books().attempt(sitting)->person, "s017");
+    EXPECT_THAT(doubts(sitting), IsEmpty());
+    // The receipt, checked by the key that the server tells everybody.
+    Books open(data());
+    const std::string receipt = exam::joined(
+        school_server::receiptOf(open, *ExamBooks(open).sitting(sitting), school_server::examKey(data()), now_));
+    httplib::Client http(school.address());
+    std::string key = http.Get("/exam-key")->body;
+    key.pop_back();
+    const exam::Receipt read = exam::openedReceipt(receipt, key, "");
+    EXPECT_EQ(read.state, "proven");
+    EXPECT_THAT(read.files, ElementsAre(school::sha256Of(session())));
+    EXPECT_EQ(read.verdict, "to be confirmed");
+    EXPECT_THAT(receipt, AllOf(Not(HasSubstr("s017")), Not(HasSubstr("Ida"))));
+    EXPECT_EQ(fs::status(data() / "exam.key").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(ExamTest, ARecordingThatWasSwappedIsFound) {
+    const fs::path shown = madeUp(folder_.path() / "shown.h5", 4, 1), other = madeUp(folder_.path() / "other.h5", 4, 2);
+    exam::Entry begun, noted, finished;
+    begun.kind = "begun", begun.at = 1'000'000;
+    noted.kind = "checkpoint", noted.at = begun.at + 4'000, noted.part = 1;
+    proving::RecordedInputs inputs(shown);
+    inputs.goOn(2000);
+    EXPECT_EQ(inputs.ticks(), 2000);
+    noted.ticks = inputs.ticks(), noted.inputs = inputs.hash();
+    finished.kind = "finished", finished.at = begun.at + 5'000;
+    const std::vector<exam::Entry> entries{begun, noted, finished};
+    EXPECT_THAT(proving::recordingDoubts({}, entries, std::vector<fs::path>{shown}), IsEmpty());
+    EXPECT_THAT(proving::recordingDoubts({}, entries, std::vector<fs::path>{other}),
+                ElementsAre(HasSubstr("another than the one that was noted during the work (at tick 2000)")));
+    // Cut short, and in two pieces of which one was kept back.
+    const fs::path brief = madeUp(folder_.path() / "brief.h5", 1, 1);
+    EXPECT_THAT(proving::recordingDoubts({}, entries, std::vector<fs::path>{brief}), SizeIs(1));
+    std::vector<exam::Entry> two = entries;
+    two[1].part = 2;
+    EXPECT_THAT(proving::recordingDoubts({}, two, std::vector<fs::path>{shown}),
+                ElementsAre(HasSubstr("recording 2 was noted during the work and not handed over")));
+}
+
+TEST_F(ExamTest, ARecordingOfBeforeRunsFasterThanTheTime) {
+    const fs::path made = madeUp(folder_.path() / "made.h5", 60, 1);
+    proving::RecordedInputs inputs(made);
+    inputs.goOn();
+    exam::Entry begun, noted, finished;
+    begun.kind = "begun", begun.at = 1'000'000;
+    noted.kind = "checkpoint", noted.at = begun.at + 5'000, noted.part = 1;
+    noted.ticks = inputs.ticks(), noted.inputs = inputs.hash();
+    finished.kind = "finished", finished.at = begun.at + 6'000;
+    EXPECT_THAT(proving::recordingDoubts({}, std::vector{begun, noted, finished}, std::vector<fs::path>{made}),
+                ElementsAre("recording 1 ran 55 s faster than the time"));
+    // Nothing said of it until the end is as fast.
+    EXPECT_THAT(proving::recordingDoubts({}, std::vector{begun, finished}, std::vector<fs::path>{made}),
+                ElementsAre("recording 1 ran 54 s faster than the time"));
+    noted.at = begun.at + 58'000, finished.at = begun.at + 59'000;
+    EXPECT_THAT(proving::recordingDoubts({}, std::vector{begun, noted, finished}, std::vector<fs::path>{made}),
+                IsEmpty());
+}
+
+TEST_F(ExamTest, WhatWasLockedAndUsedIsFound) {
+    const fs::path made = madeUp(folder_.path() / "made.h5", 2, 1, true);
+    exam::Entry begun;
+    begun.kind = "begun";
+    EXPECT_THAT(proving::recordingDoubts({"undo"}, std::vector{begun}, std::vector<fs::path>{made}),
+                ElementsAre("recording 1: undo was used 1 times, and it was locked"));
+    EXPECT_THAT(proving::recordingDoubts({"guide"}, std::vector{begun}, std::vector<fs::path>{made}), IsEmpty());
+}
+
+TEST_F(ExamTest, BeginningAgainAndAtAnotherStationShow) {
+    School school(data());
+    setUpStation(school);
+    {
+        Books open(data());
+        open.offerCode("ABC-DEF-GHJ-KMT", "exam room, 2", 4'000'000'000'000, {"server", 1});
+    }
+    const fs::path second = folder_.path() / "exam2";
+    enrolForExams(school.address(), "ABC-DEF-GHJ-KMT", second);
+    EXPECT_THAT(fetchExams(second).packs, SizeIs(1));
+    const Service here(service()), there(second);
+    const std::string first = sit(here, session()), again = sit(here, session()), elsewhere = sit(there, session());
+    ASSERT_TRUE(soon([&] { return hasArrived(first) && hasArrived(again) && hasArrived(elsewhere); }));
+    EXPECT_THAT(doubts(first), ElementsAre("this candidate has begun 1 times at other stations, too"));
+    EXPECT_THAT(doubts(again), testing::Contains("this candidate had begun 1 times here before"));
+    EXPECT_THAT(doubts(elsewhere), ElementsAre("this candidate has begun 2 times at other stations, too"));
+    // Another person's session is not this one's work.
+    const std::string borrowed = sit(here, session(), kOther);
+    ASSERT_TRUE(soon([&] { return hasArrived(borrowed); }));
+    prove();
+    EXPECT_THAT(scoresOf(borrowed).back().reason, HasSubstr("another person's work"));
+}
+
+TEST_F(ExamTest, OnlyTheServiceOfAStationTellsOfAnExam) {
+    School school(data());
+    setUpStation(school);
+    std::string sitting;
+    {
+        const Service at(service());
+        sitting = sit(at, session());
+        ASSERT_TRUE(soon([&] { return hasArrived(sitting); }));
+    }
+    // A student's own enrolment: not as work on the exam, and with no entries.
+    school_server::Chair chair;
+    school_station::Enrolment own = school_station::enrol(school.address(), school_server::kCode, "s017");
+    school::PushedAttempt p;
+    p.attempt = *chair.store().attempt(chair.finish(session(), "one.h5"));
+    p.person = "s017", p.assignment = "ex1";
+    const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + own.key}};
+    httplib::Client http(school.address());
+    auto answer = http.Post("/api/v1/attempts", headers, school_wire::toJson(p), "application/json");
+    EXPECT_EQ(answer->status, 400);
+    EXPECT_THAT(answer->body, HasSubstr("service of its station alone"));
+    EXPECT_THAT(http.Get("/api/v1/tasks/s017", headers)->body, Not(HasSubstr("ex1")));
+    exam::Entry e;
+    e.station = own.station, e.number = 1, e.previous = exam::kNoEntry, e.at = now_, e.kind = "started";
+    const exam::SigningKey key = exam::newSigningKey();
+    const std::string text = exam::toText(e);
+    const std::string entry = exam::joined({text, exam::signatureOf(text, key)});
+    EXPECT_EQ(http.Post("/api/v1/exams/chain", headers, entry, "text/plain")->status, 404) << "a station without a key";
+    // With the exam station's own way to the server and another key, and what is no entry.
+    const exam::StationIdentity station = exam::stationIn(service());
+    const httplib::Headers its{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + station.key}};
+    EXPECT_EQ(http.Post("/api/v1/exams/chain", its, entry, "text/plain")->status, 403);
+    for (const std::string& nonsense : {std::string(), std::string("x"), std::string(5000, 'x'), entry.substr(3)})
+        EXPECT_THAT(http.Post("/api/v1/exams/chain", its, nonsense, "text/plain")->status, testing::AnyOf(400, 403))
+            << nonsense;
+    EXPECT_EQ(http.Post("/api/v1/exams/station", its, key.open, "text/plain")->status, 409) << "another key";
+    EXPECT_EQ(http.Post("/api/v1/exams/chain", entry, "text/plain")->status, 426) << "nobody";
+    // What was noted is told once; put back from a copy and gone on otherwise it is another chain.
+    const std::string chain = http.Get("/api/v1/exams/chain", its)->body;
+    const fs::path last = service() / "chain" / "0000000004.txt";
+    ASSERT_TRUE(core::isThere(last)) << chain;
+    fs::remove(last);
+    {
+        const Service at(service());
+        EXPECT_TRUE(soon([&] { return at.client().desk().trouble.find("another content") != std::string::npos; }))
+            << at.client().desk().trouble;
+    }
+    EXPECT_THAT(doubts(sitting), testing::Contains(HasSubstr("changed or put back from a copy")));
+    EXPECT_EQ(http.Get("/api/v1/exams/chain", its)->body, chain) << "what is there stays";
+    // The key of the server is pinned: a pack of another school that says it is this one is refused.
+    const school::ExamPack pack = *ExamBooks(*std::make_unique<Books>(data())).newestPack("ex1");
+    exam::Pack easier = exam::packFrom(pack.text, "");
+    easier.version = 9, easier.minutes = 1440;
+    const std::string forged = exam::toText(easier);
+    EXPECT_EQ(errorIdOf([&] {
+                  (void)exam::installPack(service(), {forged, exam::signatureOf(forged, key)}, {});
+              }),
+              "exam-other-key");
+    EXPECT_EQ(errorIdOf([&] {
+                  (void)exam::installPack(service(), {forged, {pack.key, pack.signature}}, {});
+              }),
+              "exam-changed");
+}
+
+TEST_F(ExamTest, AServiceThatIsKilledLosesNothing) {
+    School school(data());
+    setUpStation(school);
+    std::string sitting;
+    {
+        const Service at(service(), std::chrono::hours(1));
+        sitting = at.client().begin(kCandidate, "t1", kPin).sitting;
+        EXPECT_EQ(errorIdOf([&] { Service other(service()); }), "exam-busy");
+    }
+    {
+        const Service at(service());
+        EXPECT_EQ(at.client().desk().sitting, sitting);
+        (void)at.client().finish(sitting, {session()});
+        ASSERT_TRUE(soon([&] { return hasArrived(sitting); }));
+    }
+    EXPECT_THAT(doubts(sitting), ElementsAre("the station's service was started again 1 times"));
+}
+
+TEST_F(ExamTest, ATeacherDecidesAndAnExaminerMarksAgainBlind) {
+    School school(data());
+    setUpStation(school);
+    const Service at(service());
+    const std::string sitting = sit(at, session());
+    ASSERT_TRUE(soon([&] { return hasArrived(sitting); }));
+    prove();
+    const auto as = [&](const char* login) {
+        auto browser = std::make_unique<school_server::Browser>(school.address());
+        EXPECT_EQ(browser->logIn(login, kPassword), 303) << login;
+        return browser;
+    };
+    const auto teacher = as("t1"), stranger = as("t2"), examiner = as("e1"), student = as("ida"), fellow = as("s018");
+    const std::string page = "/sittings/" + sitting;
+    const auto status = [&](const auto& who, const std::string& path) { return who->get(path)->status; };
+    const auto says = [&](const auto& who, const char* what, const char* verdict, const char* words) {
+        return who->send(page + "/" + what, httplib::Params{{"verdict", verdict}, {"words", words}})->status;
+    };
+    EXPECT_EQ(status(teacher, "/exams/ex1"), 200);
+    EXPECT_EQ(status(examiner, "/exams/ex1"), 200);
+    for (const auto* who : {&stranger, &student, &fellow})
+        EXPECT_EQ(status(*who, "/exams/ex1"), 403);
+    EXPECT_EQ(status(fellow, page), 403);
+    EXPECT_EQ(status(stranger, page), 403);
+    EXPECT_THAT(teacher->get("/exams/ex1")->body, AllOf(HasSubstr("Ida"), HasSubstr("To be confirmed"),
+                                                        HasSubstr("25 % more time"), HasSubstr("(proven)")));
+    EXPECT_THAT(teacher->get("/classes/c1")->body, HasSubstr("/exams/ex1"));
+    EXPECT_THAT(examiner->get("/exams/ex1")->body, AllOf(Not(HasSubstr("Ida")), HasSubstr("nothing to mark")));
+    EXPECT_EQ(teacher->get("/attempts/" + sitting)->get_header_value("Location"), page);
+    // Before a teacher has decided a student sees that it came, and not what it is worth.
+    EXPECT_THAT(student->get(page)->body, AllOf(HasSubstr("To be confirmed by a teacher"),
+                                                Not(HasSubstr("whole result")), Not(HasSubstr("proven"))));
+    EXPECT_EQ(status(student, "/attempts/" + sitting + "/result"), 403);
+    EXPECT_THAT(student->get("/people/s017")->body,
+                AllOf(HasSubstr("/attempts/" + sitting), Not(HasSubstr("0.9 / 1.0"))));
+    EXPECT_EQ(says(student, "confirm", "pass", "me"), 403);
+    EXPECT_EQ(says(student, "appeal", "", "unfair"), 409) << "nothing was decided yet";
+    EXPECT_EQ(says(examiner, "confirm", "pass", "x"), 403);
+    EXPECT_EQ(says(stranger, "confirm", "fail", "x"), 403);
+    EXPECT_EQ(says(teacher, "remark", "fail", "x"), 409);
+    EXPECT_EQ(says(teacher, "confirm", "perhaps", "x"), 409);
+    EXPECT_EQ(says(teacher, "confirm", "fail", "floor too deep <b>"), 303);
+    EXPECT_THAT(student->get(page)->body,
+                AllOf(HasSubstr("Not passed"), HasSubstr("floor too deep &lt;b&gt;"), HasSubstr("proven 0.9 / 1.0")));
+    EXPECT_EQ(says(student, "appeal", "", ""), 409) << "say why";
+    EXPECT_EQ(says(student, "appeal", "", "it is within the range"), 303);
+    EXPECT_EQ(says(student, "appeal", "", "again"), 409);
+    EXPECT_THAT(student->get(page)->body, HasSubstr("To be confirmed by a teacher"));
+    EXPECT_EQ(says(teacher, "decide", "pass", "well"), 409) << "nobody has marked it again yet";
+    EXPECT_EQ(says(teacher, "remark", "pass", "I did"), 409) << "who judged it before does not";
+    EXPECT_EQ(says(teacher, "confirm", "pass", "x"), 409) << "an appeal is open";
+    EXPECT_THAT(examiner->get("/exams/ex1")->body, HasSubstr("appealed"));
+    const std::string blind = examiner->get(page)->body;
+    EXPECT_THAT(blind, AllOf(HasSubstr("Mark again"), Not(HasSubstr("floor too deep")), Not(HasSubstr("Ida")),
+                             Not(HasSubstr("Not passed\n"))));
+    EXPECT_EQ(says(examiner, "remark", "pass", "within the range"), 303);
+    EXPECT_EQ(says(examiner, "remark", "fail", "no"), 409) << "once";
+    EXPECT_EQ(says(teacher, "decide", "pass", "the examiner is right"), 303);
+    EXPECT_THAT(student->get(page)->body, AllOf(HasSubstr("Passed"), HasSubstr("the examiner is right")));
+    // The trail: in the books for good, in the audit, and in what the receipt says.
+    Books open(data());
+    std::vector<std::string> kinds;
+    for (const school::ExamDecision& d : ExamBooks(open).decisionsOf(sitting))
+        kinds.push_back(d.kind + " " + d.person);
+    EXPECT_THAT(kinds, ElementsAre("confirm t1", "appeal s017", "remark e1", "decide t1"));
+    std::size_t audited = 0;
+    for (const school::AuditLine& line : open.audit(0, 1000, sitting))
+        audited += line.what == "exam confirm" || line.what == "exam appeal" || line.what == "exam remark" ||
+                           line.what == "exam decide"
+                       ? 1
+                       : 0;
+    EXPECT_EQ(audited, 4u);
+    const auto receipt = student->get(page + "/receipt");
+    EXPECT_EQ(receipt->status, 200);
+    EXPECT_THAT(receipt->get_header_value("Content-Disposition"), HasSubstr("receipt-"));
+    EXPECT_EQ(exam::openedReceipt(receipt->body, school_server::examKey(data()).open, "").verdict, "pass");
+    EXPECT_EQ(status(examiner, page + "/receipt"), 403) << "which says what was decided";
+    EXPECT_EQ(status(fellow, page + "/receipt"), 403);
+}
+
+}  // namespace
+}  // namespace handpiece::school_exam

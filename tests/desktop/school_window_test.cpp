@@ -123,7 +123,7 @@ TEST_F(SchoolWindowTest, WorkIsWatchedAndArrivesByItself) {
     picture(&window(), "school-watched");
     ASSERT_TRUE(cut());
     // The picture is the window's own.
-    const QString station = QString::fromLatin1(page).section("/live/", 1, 1).left(32);
+    const QString station = QString::fromLatin1(page).section("data-station=\"", 1, 1).left(32);
     const QString folder = qEnvironmentVariable("HANDPIECE_TEST_PICTURES");
     QImage shown;
     ASSERT_TRUE(waitFor([&] {

@@ -149,7 +149,7 @@ TEST_F(SchoolWindowTest, WorkIsWatchedAndArrivesByItself) {
     ASSERT_TRUE(waitFor([&] {
         asTeacher("/live/" + station + "/feed");
         QTest::qWait(300);
-        return shown.loadFromData(asTeacher("/live/" + station + "/picture"), "JPEG") && shown.width() > 480;
+        return shown.loadFromData(asTeacher("/live/" + station + "/picture"), "JPEG") && shown.height() > 300;
     }));
     finish();
     ASSERT_TRUE(waitFor([this] { return arrived() == 1; })) << note().toStdString();

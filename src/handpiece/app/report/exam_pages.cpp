@@ -132,6 +132,7 @@ std::string sittingPage(const Looker& who, const SittingView& view, const Names&
             if (!view.score->reason.empty())
                 page.paragraph(view.score->reason, view.score->state == "proven" ? Tone::note : Tone::bad);
             if (!view.score->result.empty()) page.link("/attempts/" + s.id + "/result", words()("school.whole-result"));
+            page.link("/attempts/" + s.id + "/review", words()("school-live.review"));
         }
     }
     if (view.seesWorth && view.seesDecisions) {

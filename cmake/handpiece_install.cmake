@@ -1,5 +1,5 @@
-# What is installed, in two parts: `handpiece` is what people run, `dev` what programs are built with. Nothing needs the
-# build tree afterwards: data, icons and languages are in the programs.
+# What is installed, in three parts: `handpiece` is what people run, `school` a school's server, `dev` what programs are
+# built with. Nothing needs the build tree afterwards: data, icons and languages are in the programs.
 include(CMakePackageConfigHelpers)
 get_property(rooms GLOBAL PROPERTY HANDPIECE_ROOMS)
 install(TARGETS ${rooms} EXPORT handpieceTargets
@@ -36,6 +36,11 @@ if(HANDPIECE_BUILD_CLI)
     # For an administrator to put in place; the package of Debian does that itself.
     install(FILES ${packaging}/udev/70-handpiece.rules ${packaging}/limits.d/handpiece.conf ${packaging}/settings.toml
             DESTINATION ${share}/handpiece/system COMPONENT handpiece)
+endif()
+if(TARGET handpiece-school)
+    install(TARGETS handpiece-school RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT school)
+    file(GLOB school_pages ${PROJECT_SOURCE_DIR}/docs/school*.md)
+    install(FILES ${school_pages} ${PROJECT_SOURCE_DIR}/LICENSE ${packaging}/debian/copyright DESTINATION ${share}/doc/handpiece-school COMPONENT school)
 endif()
 if(HANDPIECE_BUILD_DESKTOP)
     add_executable(handpiece_icon_maker ${packaging}/icon_maker.cpp)

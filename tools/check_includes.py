@@ -15,7 +15,7 @@ THIRD_PARTY = {
     r"tiny_obj_loader\.h": r"tests/.*",
     r"tbb/|oneapi/tbb": r"src/handpiece/base/core/parallel\.cpp",
     r"toml\+\+|toml\.hpp": r"src/handpiece/base/config/\w+\.cpp",
-    r"zip\.h": r"src/handpiece/model/case/package\.cpp|src/handpiece/scan/volume/files\.cpp|tests/.*",
+    r"zip\.h": r"src/handpiece/model/case/(large_)?package\.cpp|src/handpiece/scan/volume/files\.cpp|tests/.*",
     r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp",
     r"zlib\.h": r"src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",

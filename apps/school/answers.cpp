@@ -3,9 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdio>
 #include <map>
+#include <memory>
 #include <string_view>
 
 #include "handpiece/app/report/report_html.h"
@@ -21,13 +24,27 @@ constexpr const char *kJson = "application/json", *kCookie = "handpiece", *kPoli
 
 int statusOf(const core::Error& error) {
     static const std::map<std::string, int, std::less<>> statuses{
-        {"message-damaged", 400}, {"books-invalid", 400},   {"not-enrolled", 401},    {"code-unknown", 403},
-        {"live-private", 403},    {"books-unknown", 404},   {"books-duplicate", 409}, {"books-changed", 409},
-        {"upload-offset", 409},   {"upload-mismatch", 422}, {"no-space", 507},        {"store-locked", 503},
-        {"store-gone", 503},      {"store-refused", 503},   {"protocol-other", 426},  {"exam-damaged", 400},
-        {"exam-newer", 400},      {"exam-other-key", 403},  {"exam-changed", 403},    {"exam-chain", 409}};
+        {"message-damaged", 400},  {"books-invalid", 400},   {"not-enrolled", 401},    {"code-unknown", 403},
+        {"live-private", 403},     {"books-unknown", 404},   {"books-duplicate", 409}, {"books-changed", 409},
+        {"upload-offset", 409},    {"upload-mismatch", 422}, {"no-space", 507},        {"store-locked", 503},
+        {"store-gone", 503},       {"store-refused", 503},   {"protocol-other", 426},  {"exam-damaged", 400},
+        {"exam-newer", 400},       {"exam-other-key", 403},  {"exam-changed", 403},    {"exam-chain", 409},
+        {"account-suspended", 403}};
     const auto found = statuses.find(error.id());
     return found != statuses.end() ? found->second : 500;
+}
+
+/// Piece by piece, as the other side takes it.
+void sendFile(Response& response, Page& page) {
+    const std::uint64_t bytes = core::sizeOf(page.stream);
+    const std::shared_ptr<std::FILE> file(page.stream.release(), core::CloseFile());
+    response.set_content_provider(
+        bytes, page.type.c_str(), [file](std::size_t from, std::size_t most, httplib::DataSink& to) {
+            std::array<char, 1 << 16> piece;
+            if (std::fseek(file.get(), static_cast<long>(from), SEEK_SET) != 0) return false;
+            const std::size_t got = std::fread(piece.data(), 1, std::min(most, piece.size()), file.get());
+            return got > 0 && to.write(piece.data(), got);
+        });
 }
 
 }  // namespace
@@ -49,7 +66,7 @@ void answer(Response& response, const core::Error& error) {
         status);
 }
 
-void answer(Response& response, const Page& page, bool secure) {
+void answer(Response& response, Page&& page, bool secure) {
     response.set_header(kPolicy, fmt::format("default-src 'none'; style-src 'unsafe-inline'; img-src {}; form-action "
                                              "'self'; base-uri 'none'; frame-ancestors 'none'",
                                              page.runsScript ? "'self' data: blob:; script-src 'self'; connect-src "
@@ -63,6 +80,7 @@ void answer(Response& response, const Page& page, bool secure) {
                             fmt::format("{}={}; Path=/; HttpOnly; SameSite=Strict{}; Max-Age={}", kCookie, *page.login,
                                         secure ? "; Secure" : "", page.login->empty() ? 0 : kLoginMs / 1000));
     response.status = page.status;
+    if (page.stream) return sendFile(response, page);
     if (page.to.empty()) return response.set_content(page.body, page.type);
     response.status = 303;
     response.set_header("Location", page.to);

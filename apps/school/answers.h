@@ -16,7 +16,7 @@ constexpr school::Milliseconds kLoginMs = 12 * 3'600'000;  // a working day
 void answer(httplib::Response& response, const std::string& json, int status = 200);
 void answer(httplib::Response& response, const core::Error& error);
 /// A page, or the way to another. `secure`: over TLS, and the cookie never goes over anything else.
-void answer(httplib::Response& response, const Page& page, bool secure);
+void answer(httplib::Response& response, Page&& page, bool secure);
 /// Of the log-in's cookie; empty: there is none.
 [[nodiscard]] std::string tokenOf(const httplib::Request& request);
 /// What a form sent, whichever way it is encoded; empty: nothing.

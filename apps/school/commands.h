@@ -10,6 +10,10 @@ namespace handpiece::school_cli {
 void addServeCommand(cli::Command& app);
 /// On the server's machine: code, person, exercise, assign, results.
 void addBooksCommands(cli::Command& app);
+/// On the server's machine: people import, export, erase.
+void addPeopleCommands(cli::Command& app);
+/// On the server's machine: backup, restore.
+void addBackupCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
 /// exam, verify-receipt.

@@ -14,6 +14,7 @@
 #include "school/commands.h"
 #include "school/elsewhere.h"
 #include "school/lti.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "school/statements_push.h"
 
@@ -24,7 +25,7 @@ namespace fs = std::filesystem;
 using school::Books;
 
 struct ElsewhereOptions {
-    std::string data = "school", database;
+    std::string data, database;
     school::LtiPlatform platform;
     std::string person, external, schoolClass;
     int practiceDays = -1, closedDays = -1, personalDays = -1;
@@ -40,12 +41,14 @@ school::Act act() {
 void setPlatform(const ElsewhereOptions& o) {
     for (const std::string* address : {&o.platform.authAddress, &o.platform.tokenAddress, &o.platform.keysAddress})
         school_server::requireAddress(*address);
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     fmt::print("{}\n", school::LtiBooks(books).set(o.platform, act()));
 }
 
 void tellGrades(const ElsewhereOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     for (const school::LtiGrade& grade : school::LtiBooks(books).grades())
         fmt::print("{} {} {}: {}{}\n", grade.number, grade.line.person, grade.line.assignment,
                    grade.sent > 0 ? "sent" : fmt::format("waits, {} tries", grade.tries),
@@ -54,7 +57,8 @@ void tellGrades(const ElsewhereOptions& o) {
 
 /// Without --go nothing goes.
 void retention(const ElsewhereOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     school::Retention retention(books);
     if (o.personalDays >= 0) retention.setForPersonal(o.personalDays, act());
     if (!o.schoolClass.empty()) {
@@ -112,7 +116,7 @@ void addElsewhereCommands(cli::Command& app) {
     ElsewhereOptions& o = *options;
     const std::string where = " (on the server's machine)";
     const auto books = [&o](cli::Command& command) {
-        command.option("--data", o.data, "the server's folder").showDefault();
+        command.option("--data", o.data, "the server's folder (school)");
         command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
     };
     cli::Command lti = app.subcommand("lti", "Learning platforms: people come by LTI 1.3, grades go back" + where);

@@ -21,6 +21,7 @@
 #include "school/exam_service.h"
 #include "school/exam_station.h"
 #include "school/line.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "studies/progress_bar.h"
 
@@ -33,7 +34,7 @@ using school::ExamBooks;
 using school::Milliseconds;
 
 struct ExamOptions {
-    std::string data = "school", database, schoolClass, exercise, title, opens, exam, person;
+    std::string data, database, schoolClass, exercise, title, opens, exam, person;
     double hours = 2.0;
     int minutes = 30, extra = 0, pause = 0;
     std::vector<std::string> locked, allowed, recordings;
@@ -67,7 +68,8 @@ std::string readSecret(const char* what) {
 }
 
 void makeNew(const ExamOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const school::Act act = now();
     const auto pack = books.pack(o.exercise);
     if (!pack) throw core::Error("the school has no such exercise", o.exercise, "add it: handpiece school exercise");
@@ -82,7 +84,8 @@ void makeNew(const ExamOptions& o) {
 
 /// Their codes are told once: the books keep hashes.
 void setCandidates(const ExamOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     ExamBooks exams(books);
     const auto exam = books.assignment(o.exam);
     if (!exam) throw core::Error("there is no such exam", o.exam, "make it: handpiece school exam new");
@@ -110,15 +113,17 @@ void setCandidates(const ExamOptions& o) {
 }
 
 void setInvigilator(const ExamOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const std::string pin = school::newStationCode();
     ExamBooks(books).set(school::ExamInvigilator{o.exam, o.person, school::hashOfPassword(pin)}, now());
     fmt::print("{} {}\n", o.person, pin);
 }
 
 void sign(const ExamOptions& o) {
-    Books books(o.data, o.database);
-    const school::ExamPack pack = school_server::signExam(books, o.exam, school_server::examKey(o.data), now());
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
+    const school::ExamPack pack = school_server::signExam(books, o.exam, school_server::examKey(place.data), now());
     fmt::print("version {}, signed by {}\n", pack.version, pack.key);
 }
 
@@ -227,7 +232,7 @@ void addServersExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opti
     ExamOptions& o = *options;
     const std::string where = " (on the server's machine)";
     const auto books = [&o](cli::Command& command) {
-        command.option("--data", o.data, "the server's folder").showDefault();
+        command.option("--data", o.data, "the server's folder (school)");
         command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
     };
     const std::vector<std::string> helps(cases::kHelps.begin(), cases::kHelps.end());

@@ -31,10 +31,6 @@ std::string at(const std::string& assignment, const std::string& more) {
     return "/assignments/" + assignment + more;
 }
 
-school::Act actOf(const Visit& v) {
-    return {v.person.code, v.now};
-}
-
 /// The desk as the room of marking knows it: codes, order and repeats are a function of seed and batches.
 std::vector<marking::DeskItem> itemsOf(const school::MarkingDesk& desk) {
     marking::DeskState state;

@@ -6,6 +6,7 @@
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/books_accounts.h"
 #include "school/answers.h"
 #include "school/routes.h"
 
@@ -41,6 +42,8 @@ Page logIn(Service& of, const Request& request) {
         const std::lock_guard lock(of.guessing);
         of.throttle.succeeded(from), of.throttle.succeeded(as);
     }
+    if (school::BooksAccounts(*open).isSuspended(person->code))
+        return {403, report::loginPage(login, config::words()("school-office.is-suspended"))};
     const std::string token = school::newSecret();
     open->addLogin(token, person->code, now + kLoginMs, {person->code, now});
     return {303, {}, "/classes", token};

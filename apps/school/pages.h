@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "handpiece/assess/task/task.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/school/store/books.h"
 
 namespace handpiece::school_server {
@@ -23,9 +24,10 @@ struct Page {
     std::string to{};                    ///< another address instead of a page
     std::optional<std::string> login{};  ///< token of a log-in from here on; empty: none any more
     std::string type = "text/html; charset=utf-8";
-    std::string fileName{};   ///< to be kept as a file of this name
-    bool runsScript = false;  ///< modules of this server, which may ask it; else none runs
-    bool isReview = false;    ///< the viewer that stands in it runs, and asks nobody
+    std::string fileName{};     ///< to be kept as a file of this name
+    core::FileStream stream{};  ///< instead of `body`: may be large
+    bool runsScript = false;    ///< modules of this server, which may ask it; else none runs
+    bool isReview = false;      ///< the viewer that stands in it runs, and asks nobody
 };
 
 /// Reads an exercise of the books by its hash; null where there is none.

@@ -33,6 +33,7 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> pageRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> examRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> signOnRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 

@@ -13,6 +13,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/people/secret.h"
 #include "school/commands.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "school/station.h"
 #include "studies/progress_bar.h"
@@ -25,12 +26,12 @@ using school::Act;
 using school::Books;
 
 struct BooksOptions {
-    std::string data = "school", database, name, code, file, role = "student", person, schoolClass, exercise;
+    std::string data, database, name, code, file, role = "student", person, schoolClass, exercise;
     std::size_t hours = 24, days = 120;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
-    command.option("--data", o.data, "the server's folder").showDefault();
+    command.option("--data", o.data, "the server's folder (school)");
     command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
 }
 /// Who sits at the server's machine.
@@ -39,7 +40,8 @@ Act now() {
 }
 
 void offerCode(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const std::string code = school::newStationCode();
     const Act act = now();
     books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act);
@@ -47,7 +49,8 @@ void offerCode(const BooksOptions& o) {
 }
 
 void addPerson(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     school::Person person;
     person.code = o.code, person.name = o.name, person.roles = {o.role};
     person.login = o.code;
@@ -59,7 +62,8 @@ void addPerson(const BooksOptions& o) {
 
 /// Read from standard input, so that no list of processes and no history has it.
 void setPassword(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const auto person = books.person(o.code);
     if (!person) throw core::Error("there is no such person", o.code, "add them: handpiece school person");
     std::string password;
@@ -71,7 +75,8 @@ void setPassword(const BooksOptions& o) {
 }
 
 void addClass(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const Act act = now();
     school::SchoolClass made;
     made.id = school::newId(), made.name = o.name, made.made = act.at;
@@ -79,12 +84,14 @@ void addClass(const BooksOptions& o) {
     fmt::print("{}\n", made.id);
 }
 void join(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const school::Enrolment one{o.schoolClass, o.person, o.role};
     books.enrol(std::span(&one, 1), now());
 }
 void assign(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const Act act = now();
     const auto pack = books.pack(o.exercise);
     if (!pack) throw core::Error("the school has no such exercise", o.exercise, "add it: handpiece school exercise");
@@ -103,7 +110,8 @@ void addExercise(const BooksOptions& o) {
         throw core::Error("this exercise has no rubric, so its work cannot be scored", o.file, "give it one");
     const rubric::Rubric judged = rubric::parseRubric(task.rubric, o.file + "/rubric.toml");
     rubric::requireSound(judged);
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     const Act act = now();
     const core::PrivateFolder folder;
     const fs::path packed = folder.path() / "exercise.handpiece";
@@ -120,7 +128,8 @@ void addExercise(const BooksOptions& o) {
 }
 
 void tellResults(const BooksOptions& o) {
-    Books books(o.data, o.database);
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
     for (const school::PushedAttempt& one : books.attemptsOf(o.person)) {
         const std::vector<school::Score> scores = books.scoresOf(one.attempt.id);
         if (scores.empty()) {

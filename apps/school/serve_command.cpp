@@ -2,14 +2,25 @@
 // handpiece serve: the school's server.
 #include <fmt/format.h>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <cerrno>
 #include <charconv>
+#include <csignal>
+#include <cstddef>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <thread>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "school/commands.h"
+#include "school/school_settings.h"
 #include "school/server.h"
 #include "school/worker.h"
 #include "studies/progress_bar.h"
@@ -18,15 +29,16 @@ namespace handpiece::school_cli {
 namespace {
 
 struct ServeOptions {
-    std::string data = "school", database, listen = "127.0.0.1:8620", certificate, key, address, signOnSecret,
-                signOnHeader = "X-Handpiece-User";
-    std::vector<std::string> signOnProxies;
-    std::size_t workers = 1;
+    SchoolSettings given;
+    std::size_t workers = 0;
     bool worker = false;
 };
 
+std::atomic<bool> terminated{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
 void waitForInterrupt(const std::atomic<bool>& ended) {
-    while (!studies::cancelled() && !ended)
+    while (!studies::cancelled() && !terminated && !ended)
         std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
@@ -41,21 +53,43 @@ std::string secretIn(const std::string& file) {
     return secret;
 }
 
-void serve(const ServeOptions& o) {
+/// To the service manager that started this program, if one did (sd_notify(3)).
+void tellManager(const char* state) {
+    const char* const address = std::getenv("NOTIFY_SOCKET");
+    if (!address || (*address != '/' && *address != '@')) return;
+    sockaddr_un to{};
+    to.sun_family = AF_UNIX;
+    const std::size_t length = std::strlen(address);
+    if (length >= sizeof to.sun_path) return;
+    std::memcpy(to.sun_path, address, length);
+    if (*address == '@') to.sun_path[0] = '\0';
+    const int line = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (line < 0) return;
+    if (sendto(line, state, std::strlen(state), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to),
+               static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length)) < 0)
+        std::fprintf(stderr, "handpiece-school: the service manager does not hear: %s\n", std::strerror(errno));
+    close(line);
+}
+
+void serve(const ServeOptions& asked) {
     std::atomic<bool> ended{false};
-    if (o.worker) {
+    std::signal(SIGTERM, [](int) { terminated = true; });
+    const SchoolSettings o = settled(asked.given, ownEnvironment());
+    if (asked.worker) {
         school_server::Worker worker({o.data, o.database}, school_server::systemClock());
         worker.start();
+        tellManager("READY=1");
         fmt::print("works for {} (Ctrl-C ends it)\n", o.database.empty() ? o.data : o.database);
         (void)std::fflush(stdout);
         waitForInterrupt(ended);
+        tellManager("STOPPING=1");
         worker.stop();
         return;
     }
     school_server::Settings settings;
     settings.data = o.data, settings.database = o.database;
     settings.certificate = o.certificate, settings.key = o.key;
-    settings.workers = o.workers;
+    settings.workers = *o.workers;
     settings.address = o.address;
     while (settings.address.ends_with('/'))
         settings.address.pop_back();
@@ -64,6 +98,7 @@ void serve(const ServeOptions& o) {
     if (o.signOnProxies.empty() != settings.signOn.secret.empty())
         throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
                           "give both --sign-on-proxy and --sign-on-secret, or neither");
+    settings.workers = *o.workers;
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')
@@ -78,8 +113,11 @@ void serve(const ServeOptions& o) {
     school_server::Server server(settings);
     fmt::print("{}://{}:{} (Ctrl-C ends it)\n", o.certificate.empty() ? "http" : "https", settings.host, server.port());
     (void)std::fflush(stdout);
+    // The port is open: who comes now waits for run().
+    tellManager("READY=1");
     std::thread ending([&] {
         waitForInterrupt(ended);
+        tellManager("STOPPING=1");
         server.stop();
     });
     server.run();
@@ -93,22 +131,27 @@ void addServeCommand(cli::Command& app) {
     cli::Command command = app.subcommand("serve", "The school's server: takes what stations push, and scores it");
     const auto options = std::make_shared<ServeOptions>();
     ServeOptions& o = *options;
-    command.option("--data", o.data, "the server's folder").showDefault();
-    command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
-    command.option("--listen", o.listen, "HOST:PORT; port 0: any that is free").showDefault();
-    command.option("--certificate", o.certificate, "TLS of its own: certificate (PEM), with --key");
-    command.option("--key", o.key, "its key (PEM)");
-    command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do")
-        .check(cli::range(std::size_t{0}, std::size_t{64}))
-        .showDefault();
-    command.option("--address", o.address, "as browsers know it, https://school.example: for log-ins by LTI");
-    command.option("--sign-on-proxy", o.signOnProxies, "address of a proxy that vouches for who logs in; several times")
+    command.option("--settings", o.given.file, "a file with what is not given here (TOML)");
+    command.option("--data", o.given.data, "the server's folder (school)");
+    command.option("--database", o.given.database, "postgresql://... instead of SQLite in the folder");
+    command.option("--listen", o.given.listen, "HOST:PORT; port 0: any that is free (127.0.0.1:8620)");
+    command.option("--certificate", o.given.certificate, "TLS of its own: certificate (PEM), with --key");
+    command.option("--key", o.given.key, "its key (PEM)");
+    command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do (1)")
+        .check(cli::range(std::size_t{0}, std::size_t{64}));
+    command.option("--address", o.given.address, "as browsers know it, https://school.example: for log-ins by LTI");
+    command
+        .option("--sign-on-proxy", o.given.signOnProxies,
+                "address of a proxy that vouches for who logs in; several times")
         .takeAll();
-    command.option("--sign-on-secret", o.signOnSecret, "file with the secret that it sends");
-    command.option("--sign-on-header", o.signOnHeader, "in which it names who logs in").showDefault();
+    command.option("--sign-on-secret", o.given.signOnSecret, "file with the secret that it sends");
+    command.option("--sign-on-header", o.given.signOnHeader, "in which it names who logs in (X-Handpiece-User)");
     command.flag("--worker", o.worker, "only work: cut sessions again for the same books");
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
-    command.callback([options] { serve(*options); });
+    command.callback([options, command] {
+        if (command.isGiven("--workers")) options->given.workers = options->workers;
+        serve(*options);
+    });
 }
 
 }  // namespace handpiece::school_cli

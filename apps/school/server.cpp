@@ -12,8 +12,10 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
 #include "school/answers.h"
+#include "school/growing_pool.h"
 #include "school/housekeeper.h"
 #include "school/routes.h"
+#include "school/slow_guard.h"
 #include "school/wire.h"
 #include "school/worker.h"
 
@@ -32,7 +34,7 @@ constexpr time_t kKeepAliveS = 5;
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
     for (const auto room :
-         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes})
+         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes, officeRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;
@@ -62,6 +64,7 @@ struct Server::State : Service {
             throw core::Error(fmt::format("nobody can listen at {}:{}", settings.host, settings.port), "--listen",
                               "another program is there, or the address is none of this machine's: give another one")
                 .as("port-taken", {settings.host, std::to_string(settings.port)});
+        guard = std::make_unique<SlowGuard>(port, settings.slow);
         for (std::size_t i = 0; i < settings.workers; ++i)
             workers.push_back(std::make_unique<Worker>(WorkerSettings{settings.data, settings.database}, clock));
     }
@@ -78,7 +81,7 @@ struct Server::State : Service {
     }
 
     void configure() {
-        http->new_task_queue = [threads = settings.threads] { return new httplib::ThreadPool(threads); };
+        http->new_task_queue = [threads = settings.threads] { return new GrowingPool(threads); };
         http->set_payload_max_length(std::max(school_wire::kMostMessage, school_wire::kMostPiece));
         http->set_read_timeout(kPatience);
         http->set_write_timeout(kPatience);
@@ -111,6 +114,7 @@ struct Server::State : Service {
     void add(const Entry& entry) {
         const auto handler = [this, entry](const Request& request, Response& response) {
             ++asked;
+            const SlowGuard::Working working(*guard, request.remote_port);
             // Each person in the language that their browser asks for; the server's own where that is none of ours.
             const std::string language = config::languageAsked(request.get_header_value("Accept-Language"));
             const config::LanguageHere here(language.empty() ? config::words().language() : language);
@@ -157,6 +161,7 @@ struct Server::State : Service {
 
     std::unique_ptr<httplib::Server> http;
     int port = -1;
+    std::unique_ptr<SlowGuard> guard;
     std::vector<std::unique_ptr<Worker>> workers;
     Housekeeper house{*this};
 };

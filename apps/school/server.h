@@ -4,6 +4,7 @@
 /// A school's server: what stations push goes into its books, is cut again, and scored. The one place that speaks HTTP.
 /// docs/school.md.
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -24,13 +25,14 @@ struct Settings {
     std::filesystem::path data;  ///< its folder
     std::string database{};      ///< empty: SQLite in it; else postgresql://...
     std::string host = "127.0.0.1";
-    int port = 8620;                   ///< 0: any that is free
-    std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
-    std::size_t threads = 128;         ///< each serves one connection, also while it waits for the next question
-    std::size_t workers = 1;           ///< that cut sessions again; 0: other machines do
-    std::string address{};             ///< as browsers know it, https://school.example; for log-ins from elsewhere
+    int port = 8620;                         ///< 0: any that is free
+    std::string certificate{}, key{};        ///< files (PEM) for TLS of its own; both or neither
+    std::size_t threads = 400;               ///< at most; each serves one connection
+    std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off
+    std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
+    std::string address{};  ///< as browsers know it, without a slash at its end; empty: no log-in by LTI
     SignOn signOn{};
-    bool keepsHouse = true;  ///< sends grades, lets go what need not be kept
+    bool keepsHouse = true;  ///< what is over its time goes, and grades go out
 };
 /// Since 1970, UTC.
 using Clock = std::function<school::Milliseconds()>;

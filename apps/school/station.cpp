@@ -34,6 +34,13 @@ class Pusher {
           line_(enrolment.server, enrolment.key) {}
 
     Pushed run(const core::Progress& progress) {
+        // Books that were restored do not have what came after the backup: all of it once more, which is no error.
+        const school_wire::Status there = school_wire::statusFrom(line_.get("/api/v1/status"));
+        if (there.books != enrolment_.books) {
+            if (!enrolment_.books.empty()) enrolment_.sent = 0;
+            enrolment_.books = there.books;
+            writeEnrolment(enrolment_, file_);
+        }
         const std::size_t all = waitingIn(store_, enrolment_);
         std::size_t done = 0;
         for (auto some = store_.outbox(enrolment_.sent); !some.empty(); some = store_.outbox(enrolment_.sent))
@@ -113,7 +120,8 @@ Enrolment readEnrolment(const fs::path& file) {
     try {
         const auto json = nlohmann::json::parse(reinterpret_cast<const char*>(bytes.data()),
                                                 reinterpret_cast<const char*>(bytes.data()) + bytes.size());
-        return {json.at("server"), json.at("station"), json.at("key"), json.at("person"), json.at("sent")};
+        return {json.at("server"), json.at("station"), json.at("key"),
+                json.at("person"), json.at("sent"),    json.value("books", "")};
     } catch (const nlohmann::json::exception& e) {
         throw core::Error(fmt::format("the enrolment cannot be read: {}", e.what()), file.string(),
                           "enrol the station anew; its results stay");
@@ -121,11 +129,10 @@ Enrolment readEnrolment(const fs::path& file) {
 }
 
 void writeEnrolment(const Enrolment& e, const fs::path& file) {
-    const std::string text =
-        nlohmann::ordered_json{
-            {"server", e.server}, {"station", e.station}, {"key", e.key}, {"person", e.person}, {"sent", e.sent}}
-            .dump(1) +
-        "\n";
+    const std::string text = nlohmann::ordered_json{{"server", e.server}, {"station", e.station}, {"key", e.key},
+                                                    {"person", e.person}, {"sent", e.sent},       {"books", e.books}}
+                                 .dump(1) +
+                             "\n";
     core::writeFile(file, text, {.ownerOnly = true});
 }
 

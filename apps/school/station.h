@@ -20,6 +20,7 @@ struct Enrolment {
     std::string station, key;
     std::string person;     ///< whose results these are: the school's code
     std::int64_t sent = 0;  ///< up to where in the outbox the server has it
+    std::string books{};    ///< incarnation of the server's books that have it
 };
 /// Throws core::Error "not-enrolled" where there is none, and for one that is damaged.
 [[nodiscard]] Enrolment readEnrolment(const std::filesystem::path& file);

@@ -6,6 +6,7 @@
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/books_accounts.h"
 #include "school/answers.h"
 #include "school/routes.h"
 #include "school/wire.h"
@@ -34,8 +35,13 @@ std::vector<Entry> stationRoutes(Service* of) {
          })},
         {"GET", "/api/v1/status",
          StationHandler([of](const Request&, Response& response, const school::Station& station) {
-             school_wire::Status status{HANDPIECE_VERSION, school_wire::kProtocol, core::kEngineRevision, station.id,
-                                        of->books.take()->missingFiles(station.id)};
+             const auto open = of->books.take();
+             school_wire::Status status{HANDPIECE_VERSION,
+                                        school_wire::kProtocol,
+                                        core::kEngineRevision,
+                                        station.id,
+                                        school::BooksAccounts(*open).incarnation(),
+                                        open->missingFiles(station.id)};
              if (status.missing.size() > 200) status.missing.resize(200);
              answer(response, toJson(status));
          })},

@@ -33,6 +33,12 @@ report::Looker lookerOf(const Visit& v) {
     const auto has = [&](Role role) { return std::find(roles.begin(), roles.end(), role) != roles.end(); };
     if (has(Role::teacher) || has(Role::examiner))
         ways.push_back({"/marking", config::words()("school-teaching.marking")});
+    const auto office = [](const char* id) { return config::words()(std::string("school-office.") + id); };
+    if (may(v, Action::managePeople, {})) ways.push_back({"/office/people", office("people")});
+    if (may(v, Action::manageClasses, {})) ways.push_back({"/office/classes", office("classes")});
+    if (may(v, Action::manageStations, {})) ways.push_back({"/office/stations", office("stations")});
+    if (may(v, Action::seeAudit, {})) ways.push_back({"/office/audit", office("audit")});
+    ways.push_back({"/account", office("account")});
     return {v.person.code, v.person.name, school::requestTokenOf(v.token), std::move(ways)};
 }
 
@@ -72,8 +78,12 @@ report::Names namesFor(const Visit& v, const Relation& relation, const std::stri
     return names;
 }
 
+school::Act actOf(const Visit& v) {
+    return {v.person.code, v.now};
+}
+
 void noteLook(const Visit& v, const char* what, const std::string& about, const std::string& detail) {
-    v.books.note({v.person.code, v.now}, what, about, detail);
+    v.books.note(actOf(v), what, about, detail);
 }
 
 Page notYours() {

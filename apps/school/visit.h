@@ -26,6 +26,8 @@ namespace handpiece::school_server {
 [[nodiscard]] bool may(const Visit& visit, school::Action action, const school::Relation& relation);
 /// Their own, and that of `person` where they may see it.
 [[nodiscard]] report::Names namesFor(const Visit& visit, const school::Relation& relation, const std::string& person);
+/// Of theirs, now.
+[[nodiscard]] school::Act actOf(const Visit& visit);
 /// In the audit.
 void noteLook(const Visit& visit, const char* what, const std::string& about, const std::string& detail = {});
 /// What is not there is answered as what one may not see: nobody learns which.

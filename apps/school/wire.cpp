@@ -23,6 +23,7 @@ class Message {
         json_ = Json::parse(text, nullptr, false);
         if (!json_.is_object()) fail("message", "is no JSON object");
     }
+    [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }
     [[nodiscard]] std::string text(const char* key, std::size_t most = kMostText) const {
         const Json& found = at(key);
         if (!found.is_string()) fail(key, "is no text");
@@ -168,11 +169,16 @@ std::string toJson(const Status& s) {
                    {"protocol", s.protocol},
                    {"engine", s.engine},
                    {"station", s.station},
+                   {"books", s.books},
                    {"missing", s.missing}});
 }
 Status statusFrom(std::string_view json) {
     const Message m(json);
-    return {m.text("server"), m.whole<int>("protocol"), m.whole<std::int32_t>("engine"), m.text("station"),
+    return {m.text("server"),
+            m.whole<int>("protocol"),
+            m.whole<std::int32_t>("engine"),
+            m.text("station"),
+            m.has("books") ? m.text("books") : std::string(),
             m.texts("missing")};
 }
 

@@ -51,6 +51,7 @@ struct Status {
     int protocol = kProtocol;
     std::int32_t engine = 0;
     std::string station;
+    std::string books{};               ///< incarnation of its books; empty: of an older server
     std::vector<std::string> missing;  ///< SHA-256 of files of its attempts that have not come
 };
 [[nodiscard]] std::string toJson(const Status& status);

@@ -85,6 +85,23 @@ class Files(unittest.TestCase):
         lines = [line.split() for line in (PACKAGING / "limits.d/handpiece.conf").read_text().splitlines() if line and line[0] != "#"]
         self.assertEqual(lines, [["@handpiece", "-", "rtprio", "95"], ["@handpiece", "-", "memlock", "unlimited"]])
 
+    def test_a_schools_server_runs_with_no_rights_but_its_folder(self):
+        unit = (PACKAGING / "school/handpiece-school.service").read_text()
+        for line in ("Type=notify", "User=handpiece-school", "StateDirectory=handpiece-school", "ProtectSystem=strict", "NoNewPrivileges=yes",
+                     "CapabilityBoundingSet=", "PrivateDevices=yes", "ProtectHome=yes"):
+            self.assertIn("\n" + line + "\n", unit)
+        for script in ("postinst", "prerm", "postrm"):
+            subprocess.run(["sh", "-n", PACKAGING / "school" / script], check=True)
+            self.assertTrue(os.access(PACKAGING / "school" / script, os.X_OK), script)
+        if shutil.which("systemd-analyze") and (BUILD / "bin/handpiece-school").exists():
+            with tempfile.TemporaryDirectory() as folder:
+                # As it is, with the program of the build and a user that this machine has.
+                file = pathlib.Path(folder) / "handpiece-school.service"
+                file.write_text(unit.replace("/usr/bin/handpiece-school", str(BUILD / "bin/handpiece-school")).replace("User=handpiece-school", "User=daemon")
+                                .replace("Documentation=file:///usr/share/doc/handpiece-school/school-office.md", ""))
+                result = subprocess.run(["systemd-analyze", "verify", "--man=no", file], capture_output=True, text=True, check=False)
+                self.assertEqual((result.returncode, result.stderr), (0, ""))
+
     def test_scripts_and_descriptions_are_well_formed(self):
         for script in ("postinst", "prerm", "postrm"):
             subprocess.run(["sh", "-n", PACKAGING / "debian" / script], check=True)

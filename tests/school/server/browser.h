@@ -3,6 +3,7 @@
 /// @file
 /// Somebody at a browser, and paths to try.
 
+#include <functional>
 #include <regex>
 #include <string>
 
@@ -55,17 +56,25 @@ class Browser {
     std::string cookie_;
 };
 
-/// A path that the route's pattern has, with digits for what varies in it.
-inline std::string pathOf(const std::string& pattern) {
+/// A path that the route's pattern fits; `named`: what stands for a group, by its number from 0; else as many digits as
+/// it wants, or the first of several words.
+inline std::string pathOf(const std::string& pattern, const std::function<std::string(std::size_t)>& named = {}) {
     std::string path;
+    std::size_t group = 0;
     for (std::size_t at = 0; at < pattern.size();) {
         if (pattern[at] != '(') {
             path += pattern[at++];
             continue;
         }
-        const std::size_t end = pattern.find(')', at), counted = pattern.rfind('{', end);
-        const int count = counted > at && counted < end ? std::stoi(pattern.substr(counted + 1)) : 1;
-        path += std::string(static_cast<std::size_t>(count), '2');
+        const std::size_t end = pattern.find(')', at);
+        const std::string inside = pattern.substr(at + 1, end - at - 1);
+        const std::string own = named ? named(group) : std::string();
+        const std::size_t counted = inside.rfind('{');
+        path += !own.empty()                      ? own
+                : inside.find('|') != inside.npos ? inside.substr(0, inside.find('|'))
+                : counted != inside.npos          ? std::string(std::stoul(inside.substr(counted + 1)), '2')
+                                                  : std::string("2");
+        ++group;
         at = end + 1;
     }
     return path;

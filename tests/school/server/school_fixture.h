@@ -82,8 +82,11 @@ inline const fs::path& session() {
 /// A server in a thread of its own, with one student and the block as its exercise.
 class School {
   public:
-    explicit School(const fs::path& data, std::size_t workers = 0, int port = 0) : data_(data) {
+    explicit School(const fs::path& data, std::size_t workers = 0, int port = 0,
+                    std::chrono::milliseconds slow = std::chrono::seconds(10))
+        : data_(data) {
         Settings settings;
+        settings.slow = slow;
         settings.data = data, settings.port = port, settings.workers = workers;
         server_ = std::make_unique<Server>(settings);
         thread_ = std::thread([this] { server_->run(); });

@@ -512,5 +512,32 @@ TEST(BooksInPostgres, SayWhatIsWrongWithAnAddressAndNeverItsPassword) {
     EXPECT_EQ(error("postgresql://nobody:secret@/postgres" + address.substr(address.find('?'))).id(), "store-refused");
     EXPECT_EQ(error("postgresql://school@/nowhere" + address.substr(address.find('?'))).id(), "store-refused");
 }
+TEST_P(BooksInTroubleTest, TheLogStaysShortThoughSomebodyAlwaysReads) {
+    if (isPostgres()) GTEST_SKIP() << "PostgreSQL keeps its own";
+    auto books = filled();
+    std::atomic<bool> ends{false};
+    std::vector<std::thread> readers;
+    // One page after the other: at any moment one of them has the books open.
+    for (int i = 0; i < 4; ++i)
+        readers.emplace_back([&] {
+            const auto own = open();
+            while (!ends)
+                (void)own->everything();
+        });
+    std::uintmax_t longest = 0, written = 0;
+    for (std::uint64_t i = 1; i <= 600; ++i) {
+        books->push(attempt(i, {}, 60'000));
+        written += 60'000;
+        longest = std::max(longest, fs::file_size(data_ / "books.db-wal"));
+    }
+    ends = true;
+    for (std::thread& reader : readers)
+        reader.join();
+    RecordProperty("longest_log_bytes", std::to_string(longest));
+    std::printf("the log had %.1f MB at most, of %.1f MB written\n", 1e-6 * static_cast<double>(longest),
+                1e-6 * static_cast<double>(written));
+    EXPECT_LT(longest, 16u << 20);
+}
+
 }  // namespace
 }  // namespace handpiece::school

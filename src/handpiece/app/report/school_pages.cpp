@@ -66,6 +66,7 @@ std::string loginPage(const std::string& login, const std::string& wrong) {
     name.complete = "username", password.complete = "current-password";
     name.isRequired = password.isRequired = true;
     page.form({"/login", {name, password}, {{words()("school.log-in")}}});
+    page.link("/first", words()("school-office.have-code"));
     return page.text();
 }
 

@@ -19,8 +19,10 @@ namespace {
 
 constexpr Milliseconds kDay = 86'400'000;
 
-std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::string& address,
-                                 std::chrono::milliseconds patience) {
+}  // namespace
+
+std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, const std::string& address,
+                                            std::chrono::milliseconds patience) {
     if (!address.empty()) return std::make_unique<PostgresDatabase>(address, patience);
     const std::filesystem::path file = data / "books.db";
     const bool isNew = !core::isThere(file);
@@ -33,8 +35,11 @@ std::unique_ptr<Database> opened(const std::filesystem::path& data, const std::s
     // Pages are read while stations push; what is deleted is overwritten.
     database->run(
         "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
+    database->keepLogShort();
     return database;
 }
+
+namespace {
 
 /// Safe in an address, a table and a file's name.
 void requireCode(const char* field, const std::string& code) {
@@ -134,7 +139,7 @@ void Books::State::requireClass(const std::string& id) {
 
 Books::Books(const std::filesystem::path& data, const std::string& address, std::chrono::milliseconds patience) {
     core::prepareOutputFolder(data, true);
-    state_.reset(new State{opened(data, address, patience), ContentFiles(data)});
+    state_.reset(new State{openBooksDatabase(data, address, patience), ContentFiles(data)});
     bringUpBooks(*state_->database);
 }
 
@@ -245,10 +250,10 @@ void Books::erase(const std::string& code, const Act& act) {
     state_->requirePerson(code);
     if (state_->any("UPDATE people SET erased = $1 WHERE code = $2 AND erased = 0 RETURNING code", act.at, code)) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
-        // What a learning platform calls them.
-        for (const char* sql : {"DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
+        for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1",
+                                // What a learning platform calls them.
+                                "DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
             state_->run(sql, code);
-        state_->run("DELETE FROM logins WHERE person = $1", code);
         state_->note(act, "erase", code);
     }
     transaction.commit();
@@ -261,6 +266,9 @@ void Books::addLogin(const std::string& token, const std::string& person, Millis
     Transaction transaction(*state_->database);
     if (!state_->any("SELECT 1 FROM identities WHERE person = $1", person))
         throw unknown(*state_->database, "person", person);
+    if (state_->any("SELECT 1 FROM suspensions WHERE person = $1", person))
+        throw core::Error("this account is suspended", person, "an administrator can open it again")
+            .as("account-suspended", {person});
     state_->run("DELETE FROM logins WHERE person = $1 AND expires <= $2", person, act.at);
     if (!state_->any("INSERT INTO logins (token_hash, person, made, expires) VALUES ($1, $2, $3, $4) "
                      "ON CONFLICT DO NOTHING RETURNING person",

@@ -102,6 +102,10 @@ CREATE INDEX logins_by_person ON logins (person);
 )sql",
     // Operation of a server.
     R"sql(
+CREATE TABLE suspensions (person TEXT PRIMARY KEY REFERENCES people (code), made INT8 NOT NULL) STRICT;
+CREATE TABLE password_codes (
+  person TEXT PRIMARY KEY REFERENCES people (code), hash TEXT NOT NULL, expires INT8 NOT NULL) STRICT;
+CREATE TABLE incarnation (id TEXT PRIMARY KEY) STRICT;
 )sql",
     // Teaching: marking, standards, exemplars.
     R"sql(
@@ -224,15 +228,15 @@ std::string inWordsOf(Database::Engine engine, std::string sql) {
     return replaced(replaced(sql, ") STRICT;", ");"), " TEXT", " TEXT COLLATE \"C\"");
 }
 
-/// Of what came after `version`.
-std::string guards(Database::Engine engine, std::int64_t version) {
+/// Of what came after `version`, until `to`.
+std::string guards(Database::Engine engine, std::int64_t version, std::int64_t to) {
     std::string sql;
     if (engine == Database::Engine::postgres && version == 0)
         sql =
             "CREATE FUNCTION handpiece_stays() RETURNS trigger LANGUAGE plpgsql AS $$ BEGIN "
             "RAISE EXCEPTION 'this is never changed'; END $$;";
     for (const auto& [since, stays] : kStays) {
-        if (since <= version) continue;
+        if (since <= version || since > to) continue;
         const std::string_view table = stays.substr(0, stays.find(' ')), action = stays.substr(stays.find(' ') + 1);
         sql += fmt::format("CREATE TRIGGER {0}_{1}_stays BEFORE {1} ON {0} ", table, action);
         sql += engine == Database::Engine::sqlite ? "BEGIN SELECT RAISE(ABORT, 'this is never changed'); END;"
@@ -271,21 +275,32 @@ std::int64_t versionOf(Database& database) {
 
 }  // namespace
 
+int versionOfBooks(Database& database) {
+    return static_cast<int>(versionOf(database));
+}
+
 void bringUpBooks(Database& database) {
     if (versionOf(database) == Books::kVersion) return;
     Transaction transaction(database);
-    // Asked again now that nobody else can write: two programs may have come to the same old books.
+    // It asks again now that nobody else can write: two programs may have come to the same old books.
+    raiseBooks(database, Books::kVersion);
+    transaction.commit();
+}
+
+void raiseBooks(Database& database, int to) {
     const std::int64_t version = versionOf(database);
+    if (version >= to) return;
     if (version == 0)
         database.run(
             inWordsOf(database.engine(), "CREATE TABLE handpiece_books (version INT8 NOT NULL) STRICT;").c_str());
-    for (std::int64_t next = version; next < Books::kVersion; ++next)
+    for (std::int64_t next = version; next < to; ++next)
         database.run(inWordsOf(database.engine(), kMigrations[static_cast<std::size_t>(next)]).c_str());
-    if (const std::string kept = guards(database.engine(), version); !kept.empty()) database.run(kept.c_str());
+    if (const std::string kept = guards(database.engine(), version, to); !kept.empty()) database.run(kept.c_str());
+    constexpr int kHasIncarnation = 3;
+    if (version < kHasIncarnation && to >= kHasIncarnation)
+        Statement(database, "INSERT INTO incarnation (id) VALUES ($1)").with(newId()).run();
     database.run("DELETE FROM handpiece_books");
-    database.run(
-        fmt::format("INSERT INTO handpiece_books (version) VALUES ({})", static_cast<int>(Books::kVersion)).c_str());
-    transaction.commit();
+    database.run(fmt::format("INSERT INTO handpiece_books (version) VALUES ({})", to).c_str());
 }
 
 }  // namespace handpiece::school

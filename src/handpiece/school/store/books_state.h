@@ -3,7 +3,9 @@
 /// @file
 /// What the sources of Books share.
 
+#include <chrono>
 #include <concepts>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
@@ -15,8 +17,15 @@
 
 namespace handpiece::school {
 
+/// SQLite in `data`, or PostgreSQL: as it is.
+[[nodiscard]] std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, const std::string& address,
+                                                          std::chrono::milliseconds patience);
 /// Makes new books, brings older ones up; throws for another program's database and for a newer version.
 void bringUpBooks(Database& database);
+/// 0: there are none. Throws as bringUpBooks().
+[[nodiscard]] int versionOfBooks(Database& database);
+/// In a transaction that writes: from the version that they have, or from nothing.
+void raiseBooks(Database& database, int version);
 
 [[nodiscard]] core::Error unknown(const Database& database, const std::string& what, const std::string& which);
 [[nodiscard]] core::Error duplicate(const Database& database, const std::string& what, const std::string& which);

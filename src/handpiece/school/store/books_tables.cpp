@@ -25,6 +25,8 @@ constexpr std::array kListed = {
     Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
     Listed{"roles", "t person, t role", "person, role", "person = $1"},
     Listed{"logins", "t person, i made, i expires", "person, made, expires", "person = $1"},
+    Listed{"suspensions", "t person, i made", "person", "person = $1"},
+    Listed{"password_codes", "t person, i expires", "person", "person = $1"},
     Listed{"classes", "t id, t name, t external, i retention_days, i made, i closed", "id", nullptr},
     Listed{"enrolments", "t class, t person, t role", "class, person", "person = $1"},
     Listed{"files", "t hash, i bytes, i made", "hash", nullptr},

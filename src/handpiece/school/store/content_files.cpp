@@ -43,25 +43,38 @@ std::int64_t millisecondsOf(fs::file_time_type time) {
 
 }  // namespace
 
-std::string sha256(std::string_view bytes) {
+struct Sha256::State {
+    crypto_hash_sha256_state hashed;
+};
+Sha256::Sha256() : state_(std::make_unique<State>()) {
+    crypto_hash_sha256_init(&state_->hashed);
+}
+Sha256::~Sha256() = default;
+void Sha256::add(std::span<const std::byte> piece) {
+    crypto_hash_sha256_update(&state_->hashed, reinterpret_cast<const unsigned char*>(piece.data()), piece.size());
+}
+std::string Sha256::text() {
     std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
-    crypto_hash_sha256(hash.data(), reinterpret_cast<const unsigned char*>(bytes.data()), bytes.size());
+    crypto_hash_sha256_final(&state_->hashed, hash.data());
     return hexOf(hash);
+}
+
+std::string sha256(std::string_view bytes) {
+    Sha256 hash;
+    hash.add(std::as_bytes(std::span(bytes)));
+    return hash.text();
 }
 
 std::string sha256Of(const fs::path& path) {
     const core::FileStream file = core::openFile(path);
-    crypto_hash_sha256_state state;
-    crypto_hash_sha256_init(&state);
-    std::vector<unsigned char> piece(1 << 18);
+    Sha256 hash;
+    std::vector<std::byte> piece(1 << 18);
     for (std::size_t got; (got = std::fread(piece.data(), 1, piece.size(), file.get())) > 0;)
-        crypto_hash_sha256_update(&state, piece.data(), got);
+        hash.add(std::span(piece).first(got));
     if (std::ferror(file.get()))
         throw core::Error(fmt::format("cannot be read: {}", std::strerror(errno)), path.string(), "check the disk")
             .as("not-readable", {std::strerror(errno)});
-    std::array<unsigned char, crypto_hash_sha256_BYTES> hash{};
-    crypto_hash_sha256_final(&state, hash.data());
-    return hexOf(hash);
+    return hash.text();
 }
 
 bool isHex(std::string_view text, std::size_t length) {

@@ -7,12 +7,29 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace handpiece::school {
+
+/// SHA-256 of what comes piece by piece.
+class Sha256 {
+  public:
+    Sha256();
+    ~Sha256();
+    Sha256(const Sha256&) = delete;
+    Sha256& operator=(const Sha256&) = delete;
+    void add(std::span<const std::byte> piece);
+    /// 64 hexadecimal digits, small; nothing is added after it.
+    [[nodiscard]] std::string text();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// 64 hexadecimal digits, small.
 [[nodiscard]] std::string sha256(std::string_view bytes);

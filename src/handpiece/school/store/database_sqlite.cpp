@@ -52,6 +52,27 @@ int SqliteDatabase::waitForOthers(void* self, int times) {
     return 1;
 }
 
+namespace {
+constexpr int kLogPages = 1000;
+constexpr std::chrono::milliseconds kForReaders{100};
+}  // namespace
+
+void SqliteDatabase::keepLogShort() {
+    emptyLogAt_ = kLogPages;
+    sqlite3_wal_hook(handle_, &afterCommit, this);
+}
+
+int SqliteDatabase::afterCommit(void* self, sqlite3* handle, const char* name, int pages) {
+    auto& database = *static_cast<SqliteDatabase*>(self);
+    if (pages < database.emptyLogAt_) return SQLITE_OK;
+    const std::chrono::milliseconds patience = std::exchange(database.patience_, kForReaders);
+    const int code = sqlite3_wal_checkpoint_v2(handle, name, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
+    database.patience_ = patience;
+    database.emptyLogAt_ = code == SQLITE_OK ? kLogPages : pages + kLogPages;
+    // What was committed is; that the log is long for now is no error of it.
+    return SQLITE_OK;
+}
+
 SqliteDatabase::~SqliteDatabase() {
     sqlite3_close(handle_);
 }

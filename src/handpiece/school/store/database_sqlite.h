@@ -32,6 +32,10 @@ class SqliteDatabase final : public Database {
     void begin(Access access) override;
     void commit() override { run("COMMIT"); }
     void rollBack() noexcept override;
+    /// Of a database with a write-ahead log: whoever commits when it has grown beyond 4 MB puts it into the file and
+    /// begins it anew. SQLite by itself never waits for readers, so that with one after another it grows without end;
+    /// this waits a tenth of a second at most, and tries again 4 MB later.
+    void keepLogShort();
     /// What went wrong last, as core::Error.
     [[noreturn]] void fail() const;
 
@@ -40,7 +44,10 @@ class SqliteDatabase final : public Database {
     /// starve a third.
     static int waitForOthers(void* self, int times);
 
+    static int afterCommit(void* self, sqlite3* handle, const char* name, int pages);
+
     sqlite3* handle_ = nullptr;
+    int emptyLogAt_ = 0;  ///< [pages]
     DatabaseKind kind_;
     std::chrono::milliseconds patience_;
     std::chrono::steady_clock::time_point waitsUntil_;

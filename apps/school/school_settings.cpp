@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "school/school_settings.h"
+
+#include <fmt/format.h>
+#include <pwd.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+
+#include "handpiece/base/config/table.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+
+namespace handpiece::school_cli {
+namespace {
+
+constexpr std::size_t kMostWorkers = 64;
+
+void fill(std::string& value, const std::string& from) {
+    if (value.empty()) value = from;
+}
+
+std::size_t workersIn(const std::string& text, const std::string& where) {
+    std::size_t count = 0;
+    const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), count);
+    if (text.empty() || ec != std::errc() || end != text.data() + text.size() || count > kMostWorkers)
+        throw core::Error(fmt::format("\"{}\" is no number of workers", text), where,
+                          fmt::format("write 0 to {}", kMostWorkers));
+    return count;
+}
+
+std::vector<std::string> partsOf(const std::string& text) {
+    std::vector<std::string> parts;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find(',', at), text.size());
+        if (end > at) parts.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return parts;
+}
+
+}  // namespace
+
+Environment ownEnvironment() {
+    return [](const char* name) { return static_cast<const char*>(std::getenv(name)); };
+}
+
+SchoolSettings settled(SchoolSettings s, const Environment& environment, const std::string& systemFile) {
+    const auto variable = [&environment](const char* name) {
+        const char* const value = environment(name);
+        return std::string(value ? value : "");
+    };
+    fill(s.file, variable("HANDPIECE_SCHOOL_SETTINGS"));
+    fill(s.data, variable("HANDPIECE_SCHOOL_DATA"));
+    fill(s.database, variable("HANDPIECE_SCHOOL_DATABASE"));
+    fill(s.listen, variable("HANDPIECE_SCHOOL_LISTEN"));
+    fill(s.certificate, variable("HANDPIECE_SCHOOL_CERTIFICATE"));
+    fill(s.key, variable("HANDPIECE_SCHOOL_KEY"));
+    fill(s.address, variable("HANDPIECE_SCHOOL_ADDRESS"));
+    fill(s.signOnSecret, variable("HANDPIECE_SCHOOL_SIGN_ON_SECRET"));
+    fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
+    if (s.signOnProxies.empty()) s.signOnProxies = partsOf(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXIES"));
+    if (const std::string workers = variable("HANDPIECE_SCHOOL_WORKERS"); !s.workers && !workers.empty())
+        s.workers = workersIn(workers, "HANDPIECE_SCHOOL_WORKERS");
+    // The system's file is for those who may read it: a database's password may stand in it.
+    if (s.file.empty() && !systemFile.empty() && access(systemFile.c_str(), R_OK) == 0) s.file = systemFile;
+    if (!s.file.empty()) {
+        const config::Table file = config::Table::read(s.file);
+        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "address", "sign_on_proxies",
+                        "sign_on_secret", "sign_on_header"});
+        fill(s.data, file.text("data").value_or(""));
+        fill(s.database, file.text("database").value_or(""));
+        fill(s.listen, file.text("listen").value_or(""));
+        fill(s.certificate, file.text("certificate").value_or(""));
+        fill(s.key, file.text("key").value_or(""));
+        fill(s.address, file.text("address").value_or(""));
+        fill(s.signOnSecret, file.text("sign_on_secret").value_or(""));
+        fill(s.signOnHeader, file.text("sign_on_header").value_or(""));
+        if (s.signOnProxies.empty()) s.signOnProxies = file.texts("sign_on_proxies");
+        if (const auto workers = file.integer("workers")) {
+            if (*workers < 0 || *workers > static_cast<std::int64_t>(kMostWorkers))
+                file.fail(fmt::format("{} is no number of workers", *workers),
+                          fmt::format("write 0 to {}", kMostWorkers), "workers");
+            if (!s.workers) s.workers = static_cast<std::size_t>(*workers);
+        }
+    }
+    fill(s.data, "school");
+    fill(s.listen, "127.0.0.1:8620");
+    fill(s.signOnHeader, "X-Handpiece-User");
+    if (!s.workers) s.workers = 1;
+    return s;
+}
+
+SchoolSettings placeOfBooks(const std::string& data, const std::string& database) {
+    SchoolSettings given;
+    given.data = data, given.database = database;
+    SchoolSettings place = settled(std::move(given), ownEnvironment());
+    struct stat folder {};
+    if (geteuid() == 0 && stat(place.data.c_str(), &folder) == 0 && folder.st_uid != 0) {
+        const passwd* const owner = getpwuid(folder.st_uid);
+        const std::string name = owner ? owner->pw_name : std::to_string(folder.st_uid);
+        throw core::Error(
+            fmt::format("the school's folder is {}'s, and files that root makes in it the server cannot use", name),
+            place.data, fmt::format("runuser -u {} -- handpiece school ...", name))
+            .as("not-owner", {name});
+    }
+    return place;
+}
+
+}  // namespace handpiece::school_cli

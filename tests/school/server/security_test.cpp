@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: Apache-2.0
+// Each role at each route; what strangers send. docs/school-office.md#who-may-call-what has the table.
+#include <arpa/inet.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "school/server/pages_fixture.h"
+
+namespace handpiece::school_server {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kDocs = HANDPIECE_SOURCE_DIR "/docs/school-office.md";
+constexpr const char *kBegin = "<!-- routes -->\n", *kEnd = "<!-- /routes -->\n";
+
+class SecurityTest : public PagesTest {
+  protected:
+    /// What stands in the place of a group of a pattern: things that are there, another's.
+    std::string addressOf(const std::string& pattern) const {
+        const auto is = [&](const char* start) { return pattern.starts_with(start); };
+        return pathOf(pattern, [&](std::size_t group) -> std::string {
+            if (group > 0) return {};
+            if (is("/people/") || is("/office/people/")) return "s017";
+            if (pattern.find("/classes/") != pattern.npos) return "c1";
+            if (is("/attempts/")) return assigned_;
+            if (is("/office/stations/")) return std::string(32, 'c');
+            return {};
+        });
+    }
+    static int ask(httplib::Client& http, const Route& route, const std::string& path, const httplib::Headers& headers,
+                   const httplib::Params& form) {
+        const auto result = route.method == "GET"   ? http.Get(path, headers)
+                            : route.method == "PUT" ? http.Put(path, headers, "x", "text/plain")
+                                                    : http.Post(path, headers, form);
+        if (!result) return 0;
+        if (result->status == 303 && result->get_header_value("Location") == "/login" && path != "/logout") return 401;
+        return result->status;
+    }
+};
+
+/// "yes": it is answered, even if with what is missing in it; else it is not theirs.
+std::string inTable(const Route& route, int status) {
+    // A wrong password is refused to everybody.
+    if (route.caller == Caller::anyone && status < 500 && status != 0) return "yes";
+    return status == 401 || status == 403 || status == 426 ? ""
+           : status == 0 || status >= 500                  ? std::to_string(status)
+                                                           : "yes";
+}
+
+TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
+    School school(data());
+    Books open(data());
+    const Act act{"server", 5};
+    const std::vector<std::pair<const char*, const char*>> who{
+        {"nobody", ""}, {"student", "s018"}, {"teacher", "t1"}, {"examiner", "e1"}, {"administrator", "a1"}};
+    std::string table =
+        "| route | nobody | student | teacher | examiner | administrator | station |\n|---|---|---|---|---|---|---|\n";
+    const std::string key(64, 'd');
+    for (const Route& route : Server::routes()) {
+        std::string pattern = std::regex_replace(route.pattern, std::regex("\\(\\[[^)]*\\)"), "ID");
+        pattern = std::regex_replace(pattern, std::regex("\\|"), "\\|");
+        table += fmt::format("| `{} {}` |", route.method, pattern);
+        const std::string path = addressOf(route.pattern);
+        for (const auto& [role, code] : who) {
+            // Another data folder for each would be slow: what one changes the next does not need.
+            httplib::Client http(school.address());
+            httplib::Headers headers{{"Handpiece-Protocol", "1"}};
+            httplib::Params form;
+            if (*code) {
+                const std::string token = school::newSecret();
+                open.addLogin(token, code, systemClock()() + 1'000'000, act);
+                headers.emplace("Cookie", "handpiece=" + token);
+                form.emplace("token", school::requestTokenOf(token));
+            }
+            table += fmt::format(" {} |", inTable(route, ask(http, route, path, headers, form)));
+        }
+        httplib::Client http(school.address());
+        table += fmt::format(
+            " {} |\n", inTable(route, ask(http, route, path,
+                                          {{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + key}}, {})));
+    }
+    std::ifstream in(kDocs);
+    std::stringstream docs;
+    docs << in.rdbuf();
+    std::string text = docs.str();
+    const std::size_t from = text.find(kBegin), to = text.find(kEnd);
+    ASSERT_NE(from, text.npos) << kDocs;
+    ASSERT_NE(to, text.npos) << kDocs;
+    const std::string there = text.substr(from + std::string(kBegin).size(), to - from - std::string(kBegin).size());
+    if (std::getenv("HANDPIECE_WRITE_ROUTES")) {
+        text.replace(from + std::string(kBegin).size(), there.size(), table);
+        std::ofstream(kDocs) << text;
+        return;
+    }
+    EXPECT_EQ(there, table) << "look at each line that differs; HANDPIECE_WRITE_ROUTES=1 writes what is";
+}
+
+TEST_F(SecurityTest, WhatIsInjectedIsTextOrRefusedAndNeverAFault) {
+    School school(data());
+    Books open(data());
+    const std::string token = school::newSecret();
+    open.addLogin(token, "a1", systemClock()() + 1'000'000, {"server", 5});
+    const std::vector<std::string> strings{"' OR '1'='1",
+                                           "'; DROP TABLE people; --",
+                                           "\"><script>alert(1)</script>",
+                                           "../../../../etc/passwd",
+                                           "..%2f..%2f",
+                                           std::string("a\0b", 3),
+                                           "\xff\xfe\xc0\xaf",
+                                           "%s%s%n",
+                                           "{0}{1}{}",
+                                           "\r\nSet-Cookie: a=b",
+                                           std::string(100'000, 'A'),
+                                           "-1",
+                                           "9999999999999999999999",
+                                           "$1",
+                                           "$(reboot)",
+                                           "=cmd|' /C calc'!A0"};
+    const std::vector<const char*> names{"login", "password",  "code",  "new",    "again",  "name",
+                                         "role",  "find",      "about", "before", "class",  "person",
+                                         "sure",  "retention", "old",   "bytes",  "offset", "do"};
+    httplib::Client http(school.address());
+    std::size_t asked = 0;
+    for (const Route& route : Server::routes()) {
+        if (route.pattern == "/logout" || route.caller == Caller::station) continue;
+        for (const std::string& string : strings) {
+            httplib::Headers headers{{"Cookie", "handpiece=" + token}, {"Handpiece-Protocol", "1"}};
+            httplib::Params form{{"token", school::requestTokenOf(token)}};
+            std::string query;
+            for (const char* name : names) {
+                form.emplace(name, string);
+                if (string.size() < 1000)
+                    query += (query.empty() ? "?" : "&") + std::string(name) + "=" +
+                             httplib::detail::encode_query_param(string);
+            }
+            const std::string path = addressOf(route.pattern) + (route.method == "GET" ? query : "");
+            const auto result = route.method == "GET" ? http.Get(path, headers) : http.Post(path, headers, form);
+            ASSERT_TRUE(result) << route.pattern << " " << string.substr(0, 40);
+            EXPECT_LT(result->status, 500)
+                << route.method << " " << path.substr(0, 200) << " " << string.substr(0, 40) << "\n"
+                << result->body.substr(0, 300);
+            EXPECT_THAT(result->body, Not(HasSubstr("<script>alert"))) << route.pattern;
+            EXPECT_EQ(result->get_header_value("Set-Cookie").find("a=b"), std::string::npos);
+            EXPECT_THAT(result->body, Not(HasSubstr("root:x"))) << route.pattern;
+            ++asked;
+        }
+    }
+    EXPECT_GT(asked, 300u);
+    EXPECT_TRUE(open.person("s018"));
+    // In the path itself.
+    for (const std::string& path : {"/office/people/../../etc/passwd", "/office/people/%2e%2e%2f%2e%2e%2fetc%2fpasswd",
+                                    "/api/v1/files/..%2f..%2fbooks.db", "/files/books.db", "/books.db", "//etc/passwd",
+                                    "/classes/c1/../../people", "/classes/%00", "/classes/c1%0d%0aX:1"}) {
+        const auto result = http.Get(path, {{"Cookie", "handpiece=" + token}});
+        ASSERT_TRUE(result) << path;
+        EXPECT_THAT(result->status, testing::AnyOf(404, 403, 400)) << path;
+        EXPECT_THAT(result->body, Not(HasSubstr("root:x")));
+    }
+}
+
+/// Sends as it is, and hears what comes until the other side closes.
+std::string raw(int port, const std::string& text, int waitS = 3) {
+    std::string heard;
+    const int line = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in to{};
+    to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(port)),
+    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const timeval patience{waitS, 0};
+    setsockopt(line, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    if (connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
+        for (std::size_t at = 0; at < text.size();) {
+            const ssize_t sent = send(line, text.data() + at, text.size() - at, MSG_NOSIGNAL);
+            if (sent <= 0) break;
+            at += static_cast<std::size_t>(sent);
+        }
+        char piece[4096];
+        for (ssize_t got; (got = recv(line, piece, sizeof piece, 0)) > 0;)
+            heard.append(piece, static_cast<std::size_t>(got));
+    }
+    close(line);
+    return heard;
+}
+
+TEST_F(SecurityTest, TooLongIsRefusedAndTheNextIsServed) {
+    School school(data());
+    const auto statusOf = [](const std::string& heard) { return heard.size() > 12 ? heard.substr(9, 3) : heard; };
+    const std::string close = "Connection: close\r\n";
+    httplib::Client http(school.address());
+    const auto large = http.Post("/api/v1/enrol", std::string((4 << 20) + 1, ' '), "application/json");
+    ASSERT_TRUE(large);
+    EXPECT_EQ(large->status, 413);
+    EXPECT_THAT(
+        statusOf(raw(school.port(), "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\nHost: x\r\n" + close + "\r\n")),
+        testing::AnyOf("414", "404", "400"));
+    EXPECT_THAT(statusOf(raw(school.port(), "GET /login HTTP/1.1\r\nHost: x\r\nX: " + std::string(100'000, 'h') +
+                                                "\r\n" + close + "\r\n")),
+                testing::AnyOf("400", "431", ""));
+    std::string many = "GET /login HTTP/1.1\r\n";
+    for (int i = 0; i < 5000; ++i)
+        many += fmt::format("X-{}: y\r\n", i);
+    EXPECT_THAT(statusOf(raw(school.port(), many + close + "\r\n")), testing::AnyOf("400", "431", "200", ""));
+    EXPECT_THAT(statusOf(raw(school.port(), "\x16\x03\x01 not HTTP at all\r\n\r\n")), testing::AnyOf("400", ""));
+    EXPECT_EQ(statusOf(raw(school.port(), "POST /login HTTP/1.1\r\nHost: x\r\n" + close +
+                                              "Transfer-Encoding: chunked\r\n\r\nzzz\r\n")),
+              "400");
+    EXPECT_EQ(http.Get("/healthz")->status, 200);
+}
+
+TEST_F(SecurityTest, WhoSendsAByteASecondStopsNobodyAndIsCutOff) {
+    constexpr int kSlow = 300;
+    School school(data(), 0, 0, std::chrono::seconds(2));
+    std::vector<int> lines;
+    const std::string start = "GET /login HTTP/1.1\r\nHost: x\r\nX-Slow: ";
+    for (int i = 0; i < kSlow; ++i) {
+        const int line = socket(AF_INET, SOCK_STREAM, 0);
+        sockaddr_in to{};
+        to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(school.port())),
+        to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+        ASSERT_EQ(connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+        ASSERT_EQ(send(line, start.data(), start.size(), MSG_NOSIGNAL), static_cast<ssize_t>(start.size()));
+        lines.push_back(line);
+    }
+    // Others are served in the meantime, each over a new connection, and a file that is large too.
+    int alive = kSlow;
+    for (int second = 0; second < 60 && alive > 0; ++second) {
+        httplib::Client http(school.address());
+        http.set_read_timeout(10);
+        const auto well = http.Get("/healthz");
+        ASSERT_TRUE(well) << "in second " << second << " with " << alive << " slow ones";
+        EXPECT_EQ(well->status, 200);
+        std::this_thread::sleep_for(std::chrono::milliseconds(500));
+        alive = 0;
+        for (const int line : lines) {
+            char byte = 0;
+            const bool isOpen =
+                send(line, "x", 1, MSG_NOSIGNAL) == 1 && (recv(line, &byte, 1, MSG_DONTWAIT) > 0 || errno == EAGAIN);
+            alive += isOpen ? 1 : 0;
+        }
+    }
+    EXPECT_EQ(alive, 0);
+    for (const int line : lines)
+        close(line);
+}
+
+TEST_F(SecurityTest, AGivenLogInIsNotTakenOver) {
+    School school(data());
+    // A token that somebody put into the browser before is never the one after the log-in.
+    const std::string planted(64, 'b');
+    httplib::Client http(school.address());
+    const auto in = http.Post("/login", {{"Cookie", "handpiece=" + planted}},
+                              httplib::Params{{"login", "t1"}, {"password", kPassword}});
+    ASSERT_EQ(in->status, 303);
+    const std::string set = in->get_header_value("Set-Cookie");
+    EXPECT_THAT(set, Not(HasSubstr(planted)));
+    EXPECT_THAT(set, testing::AllOf(HasSubstr("HttpOnly"), HasSubstr("SameSite=Strict")));
+    EXPECT_EQ(http.Get("/classes", {{"Cookie", "handpiece=" + planted}})->status, 303);
+    // No form without this log-in's token, whatever the browser sends by itself.
+    Browser teacher(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    Browser other(school.address());
+    ASSERT_EQ(other.logIn("t2"), 303);
+    for (const Route& route : Server::routes()) {
+        if (route.caller != Caller::person || route.method != "POST") continue;
+        const std::string path = addressOf(route.pattern);
+        EXPECT_EQ(teacher.post(path, httplib::Params{})->status, 403) << path;
+        EXPECT_EQ(teacher.post(path, httplib::Params{{"token", school::requestTokenOf(other.cookie())}})->status, 403)
+            << path;
+    }
+}
+
+}  // namespace
+}  // namespace handpiece::school_server

@@ -2,6 +2,7 @@
 #include "school/live_board.h"
 
 #include <algorithm>
+#include <chrono>
 #include <tuple>
 
 namespace handpiece::school_server {
@@ -12,6 +13,11 @@ LiveWork::State LiveWork::state(Milliseconds now) const {
     const Milliseconds age = now - received;
     return age > LiveBoard::kGoneMs ? State::gone : age > LiveBoard::kLateMs ? State::late : State::now;
 }
+
+LiveBoard::LiveBoard()
+    : sequence_(static_cast<std::uint64_t>(
+          std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+              .count())) {}
 
 void LiveBoard::put(LiveWork shown) {
     const std::lock_guard lock(mutex_);

@@ -39,6 +39,7 @@ class LiveBoard {
     /// Who asked so long ago watches no more.
     static constexpr school::Milliseconds kWatchesMs = 10'000;
 
+    LiveBoard();
     void put(LiveWork shown);
     /// Nothing of it is there any more.
     void end(const std::string& station);
@@ -62,7 +63,7 @@ class LiveBoard {
     void forget(school::Milliseconds now);
 
     std::mutex mutex_;
-    std::uint64_t sequence_ = 0;
+    std::uint64_t sequence_;  ///< also after a new start greater than any that a browser has
     std::map<std::string, std::shared_ptr<const LiveWork>> shown_;
     std::map<std::pair<std::string, std::string>, Look> looks_;  ///< by station and who
 };

@@ -172,7 +172,10 @@ Page classPage(Service& of, const Visit& v, const std::string& id) {
     std::vector<report::LiveTile> tiles;
     for (const auto& one : works)
         tiles.push_back(tileOf(*one, may(v, Action::seeName, as.relation), v.now));
-    Page page{200, report::liveClassPage(lookerOf(v), v.books.classPage(id).schoolClass, tiles), {}, {}};
+    school::SchoolClass named{id};
+    for (const school::SchoolClass& one : v.books.classes())
+        if (one.id == id) named = one;
+    Page page{200, report::liveClassPage(lookerOf(v), named, tiles), {}, {}};
     page.runsScript = true;
     return page;
 }
@@ -197,23 +200,22 @@ std::vector<Entry> liveRoutes(Service* of) {
     return {
         {"PUT", "/api/v1/live",
          StationHandler([of](const Request& request, Response& response, const school::Station& station) {
-             if (request.body.size() > school_wire::kMostPicture + 10'000) refusePicture("it is too long");
              LiveWork shown;
-             shown.live = school_wire::liveFrom(request.body);
-             shown.station = station.id, shown.stationName = station.name;
+             const Milliseconds now = of->clock();
              try {
+                 if (request.body.size() > school_wire::kMostPicture + 10'000) refusePicture("it is too long");
+                 shown.live = school_wire::liveFrom(request.body);
                  requirePicture(shown.live.picture);
-                 const Milliseconds now = of->clock();
+                 shown.station = station.id, shown.stationName = station.name;
                  admit(*of->books.take(), shown, now);
-                 shown.received = now;
-                 shown.captured = now - std::clamp<std::int64_t>(shown.live.ageMs, 0, kMostAgeMs);
              } catch (const core::Error&) {
                  of->live.end(station.id);  // what was there before is no longer so
                  throw;
              }
+             shown.received = now;
+             shown.captured = now - std::clamp<std::int64_t>(shown.live.ageMs, 0, kMostAgeMs);
              shown.picture = std::make_shared<const std::string>(std::move(shown.live.picture));
              shown.live.picture.clear();
-             const Milliseconds now = shown.received;
              of->live.put(std::move(shown));
              answer(response, toJson(of->live.watched(station.id, now)));
          })},

@@ -142,7 +142,8 @@ class Captures {
     std::map<std::size_t, Clock::time_point> at_;
 };
 
-void furnish(const fs::path& data, const SimulatedSchool& s, const std::string& anyFile) {
+/// The codes with which stations enrol.
+std::vector<std::string> furnish(const fs::path& data, const SimulatedSchool& s, const std::string& anyFile) {
     school::Books books(data, s.database);
     const school::Act act{"server", school_server::systemClock()()};
     const std::string hash = school::hashOfPassword(kPassword);
@@ -169,14 +170,17 @@ void furnish(const fs::path& data, const SimulatedSchool& s, const std::string& 
     books.add(school::Assignment{"assignment", kClass, kExercise, kRubric, "Class II, first try", "practice", "",
                                  act.at - 1000, act.at + 1'000'000'000},
               act);
+    std::vector<std::string> codes;
     for (std::size_t i = 0; i < s.stations; ++i)
-        books.offerCode(fmt::format("CODE-{:06}", i), fmt::format("chair {}", i + 1), act.at + 1'000'000'000, act);
+        books.offerCode(codes.emplace_back(school::newStationCode()), fmt::format("chair {}", i + 1),
+                        act.at + 1'000'000'000, act);
+    return codes;
 }
 
 /// A station with a home of its own and the real side of its.
 class Station {
   public:
-    Station(const fs::path& home, const std::string& server, std::size_t number,
+    Station(const fs::path& home, const std::string& server, const std::string& code, std::size_t number,
             const std::vector<std::string>& pictures, const std::vector<std::string>& sessions, Captures& captures,
             const SimulatedSchool& s)
         : home_(home),
@@ -186,8 +190,7 @@ class Station {
           captures_(captures),
           settings_(s),
           store_((fs::create_directories(home / "sessions"), home / "results.db")) {
-        school_station::Enrolment e =
-            school_station::enrol(server, fmt::format("CODE-{:06}", number), fmt::format("s{}", number));
+        school_station::Enrolment e = school_station::enrol(server, code, fmt::format("s{}", number));
         school_station::writeEnrolment(e, home / "school.json");
         service_ = std::make_unique<school_station::StationService>(
             school_station::StationFolders{home, home / "sessions"}, [this](const school_station::Standing& standing) {
@@ -280,7 +283,7 @@ class Browser {
     }
     void ask(std::uint64_t& since) {
         const auto answer = http_.Get(
-            fmt::format("/classes/{}/live/feed?since={}", kClass, singly_ ? 1'000'000'000'000 : since), headers_);
+            fmt::format("/classes/{}/live/feed?since={}", kClass, singly_ ? 1'000'000'000'000'000 : since), headers_);
         if (!answer || answer->status != 200) {
             ++failures;
             return;
@@ -332,13 +335,13 @@ void simulateSchool(const SimulatedSchool& s) {
     const core::PrivateFolder folder;
     const fs::path data = folder.path() / "server";
     fs::create_directories(data);
-    furnish(data, s, sessions.front());
+    const std::vector<std::string> codes = furnish(data, s, sessions.front());
     const ServerProcess server(data, s.database);
     Captures captures;
     std::vector<std::unique_ptr<Station>> stations;
     for (std::size_t i = 0; i < s.stations; ++i)
-        stations.push_back(std::make_unique<Station>(folder.path() / fmt::format("s{}", i), server.address(), i,
-                                                     pictures, sessions, captures, s));
+        stations.push_back(std::make_unique<Station>(folder.path() / fmt::format("s{}", i), server.address(), codes[i],
+                                                     i, pictures, sessions, captures, s));
     std::vector<std::unique_ptr<Browser>> browsers;
     for (std::size_t i = 0; i < s.browsers; ++i)
         browsers.push_back(std::make_unique<Browser>(server.address(), i, captures, s.singly));

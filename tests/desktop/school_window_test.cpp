@@ -93,7 +93,7 @@ class SchoolWindowTest : public PracticeTest {
 
 TEST_F(SchoolWindowTest, WorkIsWatchedAndArrivesByItself) {
     const fs::path given = makeExercise("one", false);
-    makeExercise("two", false);
+    makeExercise("two", false, {"undo"});
     enrol(given);
     startWithTooth();
     ASSERT_TRUE(waitFor([this] { return feature().link().standing().isConnected; })) << note().toStdString();

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "fuzz_model.h"
+#include "school/jpeg.h"
 #include "school/wire.h"
 
 namespace wire = handpiece::school_wire;
@@ -35,6 +36,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     twice(text, [](std::string_view t) { return wire::receivedFrom(t); });
     twice(text, [](std::string_view t) { return wire::statusFrom(t); });
     twice(text, [](std::string_view t) { return wire::tasksFrom(t); });
+    twice(text, [](std::string_view t) { return wire::watchedFrom(t); });
+    // What a station shows: read again it is the same, and a picture's size is one.
+    (void)handpiece::fuzz::readText(data, size, [](std::string_view one) {
+        const std::string once = wire::toBytes(wire::liveFrom(one));
+        if (wire::toBytes(handpiece::fuzz::mustRead([&] { return wire::liveFrom(once); })) != once) __builtin_trap();
+    });
+    if (const auto pixels = handpiece::school_server::jpegSize(text); pixels && pixels->width < 1) __builtin_trap();
     (void)wire::errorFrom(text, 500);
     return 0;
 }

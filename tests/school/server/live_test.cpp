@@ -326,17 +326,18 @@ TEST(LiveBoard, WhatIsOldIsGone) {
 
 TEST_F(LiveTest, ThirtyStationsAtOnce) {
     constexpr int kStations = 30, kPictures = 20, kBrowsers = 4;
+    std::vector<std::string> codes;
     {
         Books open = books();
         for (int i = 0; i < kStations; ++i)
-            open.offerCode(fmt::format("CODE-{:06}", i), fmt::format("chair {:02}", i), 4'000'000'000'000,
-                           {"server", 1});
+            open.offerCode(codes.emplace_back(school::newStationCode()), fmt::format("chair {:02}", i),
+                           4'000'000'000'000, {"server", 1});
     }
     School school(data());
     std::vector<std::unique_ptr<Station>> stations;
     for (int i = 0; i < kStations; ++i)
-        stations.push_back(
-            std::make_unique<Station>(school_station::enrol(school.address(), fmt::format("CODE-{:06}", i), "s017")));
+        stations.push_back(std::make_unique<Station>(
+            school_station::enrol(school.address(), codes[static_cast<std::size_t>(i)], "s017")));
     std::atomic<int> failures{0};
     std::atomic<bool> ends{false};
     std::vector<std::thread> threads, browsers;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What the books know of learning platforms: who they are, log-ins that are under way, whose grades go where, and those
-/// that wait to go. docs/school-lti.md.
+/// What the books know of learning platforms: who they are, log-ins that are under way, whose grades go where, and
+/// those that wait to go. docs/school-lti.md.
 
 #include <cstdint>
 #include <optional>
@@ -36,8 +36,8 @@ struct LtiGrade {
 };
 /// What is known of an assignment's worth for a person.
 struct Worth {
-    std::string kind{};     ///< of the assignment
-    std::string verdict{};  ///< of an exam
+    std::string kind{};                           ///< of the assignment
+    std::string verdict{};                        ///< of an exam
     std::optional<double> points{}, maxPoints{};  ///< confirmed by a teacher
     Milliseconds decided = 0;
     Milliseconds came = 0;  ///< when the last attempt came; 0: none

@@ -74,11 +74,11 @@ TEST_F(SchoolSettingsTest, WhatIsWrongIsToldWithItsPlace) {
     given.file = file("a.toml", "lisen = \"x\"\n");
     EXPECT_THAT(errorOf(given), AllOf(HasSubstr("a.toml"), HasSubstr("lisen")));
     given.file = file("a.toml", "\n\nworkers = 1000\n");
-    EXPECT_THAT(errorOf(given), AllOf(HasSubstr("a.toml:3"), HasSubstr("0 to 64")));
+    EXPECT_THAT(errorOf(given), AllOf(HasSubstr("line 3"), HasSubstr("0 to 64")));
     given.file = file("a.toml", "data = 3\n");
-    EXPECT_THAT(errorOf(given), AllOf(HasSubstr("a.toml:1"), HasSubstr("data")));
+    EXPECT_THAT(errorOf(given), AllOf(HasSubstr("line 1"), HasSubstr("data")));
     given.file = file("a.toml", "data = \n");
-    EXPECT_THAT(errorOf(given), HasSubstr("a.toml:1"));
+    EXPECT_THAT(errorOf(given), HasSubstr("line 1"));
     given.file = "/nowhere/at/all.toml";
     EXPECT_THAT(errorOf(given), HasSubstr("/nowhere/at/all.toml"));
     environment_["HANDPIECE_SCHOOL_WORKERS"] = "many";

@@ -391,8 +391,9 @@ TEST_P(BooksInTroubleTest, NothingConfirmedIsLostAndNothingHalfThereAfterKillNin
         EXPECT_EQ(sha256Of(books->files().path(sha256(bytes))), sha256(bytes));
         EXPECT_THAT(books->commentsOn(p.attempt.id), SizeIs(1));
     }
-    EXPECT_EQ(books->progress("arrival").waiting, static_cast<std::int64_t>(promised.size()) + 0)
-        << "what was not confirmed was begun again under the same number";
+    // What was not confirmed was begun again under the same number; the last may be there without its promise.
+    const std::int64_t kept = static_cast<std::int64_t>(promised.size());
+    EXPECT_THAT(books->progress("arrival").waiting, testing::AnyOf(kept, kept + 1));
     for (const std::string& hash : books->files().all())
         EXPECT_EQ(sha256Of(books->files().path(hash)), hash) << "nothing in part";
     EXPECT_EQ(sql("SELECT count(*) FROM attempts"), sql("SELECT count(DISTINCT attempt) FROM attempt_files"));

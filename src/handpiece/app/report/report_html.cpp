@@ -77,7 +77,7 @@ input, button, select, textarea { background: #1d232d; border-color: #8a93a3; } 
 constexpr std::string_view kLiveStyle = R"(
 body { max-width: none; }
 .tiles { list-style: none; padding: 0; display: grid; gap: 1rem; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); }
-.tiles.large { grid-template-columns: minmax(0, 70rem); }
+.tiles.large { grid-template-columns: minmax(0, 48rem); }
 .tiles > li { border: 2px solid #c9ced6; border-radius: 8px; padding: 0.4rem; } .tiles p { margin: 0.2rem 0; }
 .tiles a { display: block; } .tiles img { width: 100%; height: auto; aspect-ratio: 8 / 5; background: #22262e; display: block; }
 .flags { list-style: none; padding: 0; margin: 0.2rem 0; color: #c62828; font-weight: 600; } .unseen { position: absolute; clip-path: inset(50%); }

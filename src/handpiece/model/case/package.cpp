@@ -172,8 +172,8 @@ PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, co
     if (!source) throw core::Error(messageOf(error), where);
     const Archive archive(zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
     if (!archive)
-        throw core::Error(fmt::format("this is no .handpiece file or zip, or a damaged one: {}", messageOf(error)), where,
-                          "copy the file again")
+        throw core::Error(fmt::format("this is no .handpiece file or zip, or a damaged one: {}", messageOf(error)),
+                          where, "copy the file again")
             .as("not-a-package", {messageOf(error)});
     (void)source.release();  // the archive's now
     PackageFiles files;

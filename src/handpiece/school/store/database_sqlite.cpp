@@ -3,6 +3,7 @@
 
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -54,7 +55,7 @@ int SqliteDatabase::waitForOthers(void* self, int times) {
 
 namespace {
 constexpr int kLogPages = 1000;
-constexpr std::chrono::milliseconds kForReaders{100};
+constexpr std::chrono::milliseconds kForReaders{2000};
 }  // namespace
 
 void SqliteDatabase::keepLogShort() {
@@ -68,7 +69,7 @@ int SqliteDatabase::afterCommit(void* self, sqlite3* handle, const char* name, i
     const std::chrono::milliseconds patience = std::exchange(database.patience_, kForReaders);
     const int code = sqlite3_wal_checkpoint_v2(handle, name, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
     database.patience_ = patience;
-    database.emptyLogAt_ = code == SQLITE_OK ? kLogPages : pages + kLogPages;
+    database.emptyLogAt_ = code == SQLITE_OK ? kLogPages : pages + std::max(kLogPages, pages / 2);
     // What was committed is; that the log is long for now is no error of it.
     return SQLITE_OK;
 }

@@ -34,7 +34,7 @@ class SqliteDatabase final : public Database {
     void rollBack() noexcept override;
     /// Of a database with a write-ahead log: whoever commits when it has grown beyond 4 MB puts it into the file and
     /// begins it anew. SQLite by itself never waits for readers, so that with one after another it grows without end;
-    /// this waits a tenth of a second at most, and tries again 4 MB later.
+    /// this waits for those who read, two seconds at most, and else tries again when it is half as long again.
     void keepLogShort();
     /// What went wrong last, as core::Error.
     [[noreturn]] void fail() const;

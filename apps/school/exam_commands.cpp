@@ -189,13 +189,27 @@ void watch(const ExamOptions& o) {
     for (const std::string& file : o.recordings)
         parts.emplace_back(file);
     std::vector<std::int64_t> told(parts.size(), -1);
-    while (!studies::cancelled() && client.desk().sitting == sitting) {
+    // The service may be started again in the meantime: it goes on with the same sitting.
+    const auto round = [&] {
+        if (client.desk().sitting != sitting) return false;
         for (std::size_t i = 0; i < parts.size(); ++i) {
             if (!core::isThere(o.recordings[i])) continue;
             parts[i].goOn();
             if (parts[i].ticks() == told[i]) continue;
             client.checkpoint(sitting, static_cast<std::int64_t>(i + 1), parts[i].ticks(), parts[i].hash());
             told[i] = parts[i].ticks();
+        }
+        return true;
+    };
+    bool isSilent = false;
+    while (!studies::cancelled()) {
+        try {
+            if (!round()) return;
+            isSilent = false;
+        } catch (const core::Error& e) {
+            if (e.id() != "exam-service") throw;
+            if (!isSilent) std::fprintf(stderr, "handpiece-school: %s\n", e.what());
+            isSilent = true;
         }
         for (double left = o.everyS; left > 0.0 && !studies::cancelled(); left -= 0.1)
             std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -48,7 +48,10 @@ class Line {
                                           httplib::to_string(result.error())),
                               socket_.string(), "call the invigilator: it is started by its own user")
                 .as("exam-service", {httplib::to_string(result.error())});
-        if (result->status < 200 || result->status > 299) throw school_wire::errorFrom(result->body, result->status);
+        if (result->status < 200 || result->status > 299) {
+            const core::Error e = school_wire::errorFrom(result->body, result->status);
+            throw core::Error(e.problem(), "this station's exams", e.remedy()).as(e.id(), e.arguments());
+        }
         return result->body;
     }
     const std::filesystem::path& socket_;

@@ -9,6 +9,27 @@ namespace handpiece::school_server {
 
 using school::Milliseconds;
 
+namespace {
+
+/// "chair 2" comes before "chair 10": numbers are written as long as the longest.
+std::string inOrder(const std::string& name) {
+    constexpr std::size_t kDigits = 12;
+    std::string key;
+    for (std::size_t i = 0; i < name.size();) {
+        std::size_t end = i;
+        while (end < name.size() && name[end] >= '0' && name[end] <= '9')
+            ++end;
+        if (end > i)
+            key += std::string(kDigits - std::min(kDigits, end - i), '0') + name.substr(i, end - i);
+        else
+            key += name[end++];
+        i = end;
+    }
+    return key;
+}
+
+}  // namespace
+
 LiveWork::State LiveWork::state(Milliseconds now) const {
     const Milliseconds age = now - received;
     return age > LiveBoard::kGoneMs ? State::gone : age > LiveBoard::kLateMs ? State::late : State::now;
@@ -48,7 +69,8 @@ std::vector<std::shared_ptr<const LiveWork>> LiveBoard::inClass(const std::strin
                 all.push_back(shown);
     }
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-        return std::tie(a->stationName, a->station) < std::tie(b->stationName, b->station);
+        const auto key = [](const LiveWork& w) { return std::make_tuple(inOrder(w.stationName), w.station); };
+        return key(*a) < key(*b);
     });
     return all;
 }

@@ -54,17 +54,6 @@ std::optional<school::Score> countingScore(const school::Books& books, const std
     return scores.empty() ? std::nullopt : std::optional(scores.back());
 }
 
-void addPicture(HtmlReport& page, const Visit& v, const school::PushedAttempt& attempt, const std::string& exercise,
-                const TaskOf& taskOf, PictureShelf& pictures) {
-    const auto task = taskOf(v.books, exercise);
-    if (!task) return page.paragraph(words()("school.not-there"), Tone::missing);
-    const PictureShelf::Drawn drawn = pictures.of(v.books, attempt, *task);
-    if (drawn.png.empty())
-        page.paragraph(words()("report.no-pictures", drawn.missing), Tone::missing);
-    else
-        page.picture(std::span(drawn.png), words()("school-teaching.picture"));
-}
-
 /// A work of a marker's desk behind a code.
 struct Found {
     school::MarkingDesk desk;
@@ -155,6 +144,7 @@ Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAt
         report::sitePage(words()("school-teaching.adjudicate-title", attempt.attempt.id.substr(0, 6)), lookerOf(v));
     page.link(at(of.assignment.id, "/marks"), words()("school-teaching.back-to-marks", of.assignment.title));
     page.link("/attempts/" + attempt.attempt.id, words()("school-teaching.attempt"));
+    page.link("/attempts/" + attempt.attempt.id + "/review", words()("school-live.review"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
     addPicture(page, v, attempt, of.assignment.pack, taskOf, pictures);
     page.heading(words()("school-teaching.markers-said"));
@@ -229,6 +219,17 @@ std::optional<Assigned> assignedFor(const Visit& v, const std::string& id, Actio
     return of;
 }
 
+void addPicture(HtmlReport& page, const Visit& v, const school::PushedAttempt& attempt, const std::string& exercise,
+                const TaskOf& taskOf, PictureShelf& pictures) {
+    const auto task = taskOf(v.books, exercise);
+    if (!task) return page.paragraph(words()("school.not-there"), Tone::missing);
+    const PictureShelf::Drawn drawn = pictures.of(v.books, attempt, *task);
+    if (drawn.png.empty())
+        page.paragraph(words()("report.no-pictures", drawn.missing), Tone::missing);
+    else
+        page.picture(std::span(drawn.png), words()("school-teaching.picture"));
+}
+
 bool marksBlindStill(const Visit& v, const std::string& assignment) {
     const Teaching teaching(v.books);
     const auto desk = teaching.desk(assignment, v.person.code);
@@ -268,6 +269,12 @@ ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt
 }
 
 Page markingOf(const Visit& v) {
+    const std::vector<school::Role> roles = rolesOf(v.person);
+    // Who may mark in some class, also where there is none yet.
+    if (std::none_of(roles.begin(), roles.end(), [](school::Role role) {
+            return school::reachOf(role, Action::markBlind) != school::Reach::none;
+        }))
+        return notYours();
     HtmlReport page = report::sitePage(words()("school-teaching.marking"), lookerOf(v), "/marking");
     bool isAny = false;
     for (const school::SchoolClass& one : v.books.classes()) {
@@ -297,12 +304,14 @@ Page markingOfClass(const Visit& v, const std::string& schoolClass) {
         for (const school::MarkingSheet& sheet : teaching.sheets(a.id, v.person.code))
             in += sheet.isIn ? 1 : 0;
         std::vector<Cell> row{
-            {a.title, at(a.id, "/marking")},
+            {a.title, at(a.id, "")},
+            {words()("school-teaching.your-desk"), at(a.id, "/marking")},
             {desk ? words()("school-teaching.in-of", in, all) : words()("school-teaching.not-begun")}};
         if (seesMarks) row.push_back({words()("school-teaching.all-marks"), at(a.id, "/marks")});
         rows.push_back(std::move(row));
     }
-    std::vector<std::string> header{words()("school-teaching.assignment"), words()("school-teaching.your-desk")};
+    std::vector<std::string> header{words()("school-teaching.assignment"), words()("school-teaching.your-desk"),
+                                    words()("school.state")};
     if (seesMarks) header.push_back(words()("school-teaching.all-marks"));
     if (rows.empty())
         page.paragraph(words()("school-teaching.no-assignments"), Tone::missing);
@@ -348,18 +357,24 @@ Page deskOf(const Visit& v, const std::string& assignment) {
         const auto attempt = v.books.attempt(id);
         waiting += !isThere && attempt && attempt->person != v.person.code ? 1 : 0;
     }
-    if (waiting > 0)
+    if (const std::size_t open = items.empty() ? exemplarsOpen(v, assignment) : 0; open > 0) {
+        page.paragraph(words()("school-teaching.exemplars-first", open), Tone::missing);
+        page.link(at(assignment, "/exemplars"), words()("school-teaching.exemplars"));
+    } else if (waiting > 0) {
         page.form({at(assignment, "/marking"),
                    {report::tokenField(lookerOf(v))},
                    {{words()(items.empty() ? "school-teaching.begin" : "school-teaching.take-more", waiting)}}});
-    else if (items.empty())
+    } else if (items.empty()) {
         page.paragraph(words()("school-teaching.no-works"), Tone::missing);
+    }
     return {200, page.text()};
 }
 
 Page takeWorks(const Visit& v, const std::string& assignment) {
     const auto of = assignedFor(v, assignment, Action::markBlind);
     if (!of) return notYours();
+    if (!Teaching(v.books).desk(assignment, v.person.code) && exemplarsOpen(v, assignment) > 0)
+        return {303, {}, at(assignment, "/exemplars")};
     (void)Teaching(v.books).takeWorks(assignment, v.person.code, newSeed(), actOf(v));
     return {303, {}, at(assignment, "/marking")};
 }
@@ -461,7 +476,7 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
                                ? fmt::format("{}, {}", pointsText(settled.final->points, settled.final->maxPoints),
                                              verdictText(settled.final->verdict))
                                : "\u2013"});
-        row.push_back({released.contains(id) ? words()("school-teaching.yes") : words()("school-teaching.no")});
+        row.push_back({released.contains(id) ? words()("school-teaching.released") : ""});
         settledCount += settled.final ? 1 : 0;
         open += settled.needsAdjudication ? 1 : 0;
         rows.push_back(std::move(row));
@@ -588,8 +603,8 @@ Page agreementOf(const Visit& v, const std::string& assignment) {
         for (const assessment::RaterPair& p : c.pairs) {
             std::string kappa = p.linear  ? estimate(*p.linear)
                                 : p.kappa ? estimate(*p.kappa)
-                                          : "\u2013",
-                        bias = "\u2013", limits = "\u2013";
+                                          : "",
+                        bias = "", limits = "";
             if (p.blandAltman && p.blandAltman->bias) bias = fmt::format("{:+.2f}", *p.blandAltman->bias);
             if (p.blandAltman && p.blandAltman->low)
                 limits = fmt::format("{:.2f} \u2013 {:.2f}", *p.blandAltman->low, *p.blandAltman->high);

@@ -43,6 +43,9 @@ Page classOf(const Visit& v, const std::string& id) {
     std::vector<report::HtmlReport::Cell> rooms;
     if (may(v, Action::markBlind, relation))
         rooms.push_back({words()("school-teaching.marking"), "/classes/" + id + "/marking"});
+    rooms.push_back({words()("school-teaching.results"), "/classes/" + id + "/results"});
+    if (may(v, Action::assign, relation))
+        rooms.push_back({words()("school-teaching.assignments"), "/classes/" + id + "/assignments"});
     return {200, report::classPage(lookerOf(v), page, names, rooms)};
 }
 

@@ -11,6 +11,7 @@
 #include "school/http.h"
 #include "school/pages.h"
 #include "school/service.h"
+#include "school/wire.h"
 
 namespace handpiece::school_server {
 
@@ -24,6 +25,7 @@ struct Entry {
     const char* method;
     const char* pattern;
     std::variant<Handler, StationHandler, Shown> answer;
+    std::size_t most = school_wire::kMostMessage;  ///< bytes that may be sent; more only of who is logged in
     [[nodiscard]] Caller caller() const { return static_cast<Caller>(answer.index()); }
 };
 

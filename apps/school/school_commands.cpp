@@ -13,6 +13,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/people/secret.h"
 #include "school/commands.h"
+#include "school/library.h"
 #include "school/school_settings.h"
 #include "school/server.h"
 #include "school/station.h"
@@ -103,28 +104,11 @@ void assign(const BooksOptions& o) {
     fmt::print("{}\n", made.id);
 }
 
-/// Its file goes among the server's, by what is in it.
 void addExercise(const BooksOptions& o) {
-    const tasks::Task task = tasks::readTask(o.file);
-    if (task.rubric.empty())
-        throw core::Error("this exercise has no rubric, so its work cannot be scored", o.file, "give it one");
-    const rubric::Rubric judged = rubric::parseRubric(task.rubric, o.file + "/rubric.toml");
-    rubric::requireSound(judged);
     const SchoolSettings place = placeOfBooks(o.data, o.database);
     Books books(place.data, place.database);
-    const Act act = now();
-    const core::PrivateFolder folder;
-    const fs::path packed = folder.path() / "exercise.handpiece";
-    tasks::writeTask(task, packed);
-    const std::vector<std::byte> bytes = core::readFile(packed);
-    const std::string hash = school::sha256Of(packed);
-    const school::Upload upload{std::string(32, '0'), hash, bytes.size()};
-    (void)books.append(upload, books.received(upload, act.at), bytes, act.at);
-    const std::string rubricHash = rubric::hashText(rubric::hashOf(judged));
-    books.add(school::RubricVersion{rubricHash, judged.id, task.rubric, 1, act.at}, act);
-    const std::string exerciseHash = rubric::hashText(tasks::contentHash(task));
-    books.add(school::Pack{exerciseHash, hash, task.id, task.id, rubricHash, act.at}, act);
-    fmt::print("{}: exercise {}, rubric {}\n", task.id, exerciseHash, rubricHash);
+    const school_server::AddedExercise added = school_server::addExercise(books, o.file, now());
+    fmt::print("{}: exercise {}, rubric {}\n", added.id, added.hash, added.rubric);
 }
 
 void tellResults(const BooksOptions& o) {

@@ -82,7 +82,11 @@ struct Server::State : Service {
 
     void configure() {
         http->new_task_queue = [threads = settings.threads] { return new GrowingPool(threads); };
-        http->set_payload_max_length(std::max(school_wire::kMostMessage, school_wire::kMostPiece));
+        // Each route has its own bound (read()); beyond that of all of them the library answers by itself.
+        std::size_t most = std::max(school_wire::kMostMessage, school_wire::kMostPiece);
+        for (const Entry& entry : everyRoute(this))
+            most = std::max(most, entry.most);
+        http->set_payload_max_length(most);
         http->set_read_timeout(kPatience);
         http->set_write_timeout(kPatience);
         http->set_keep_alive_timeout(kKeepAliveS);
@@ -123,10 +127,54 @@ struct Server::State : Service {
                 return (*stations)(request, response, stationOf(request));
             show(entry, request, response);
         };
+        const auto withBody = [this, entry, handler](const Request& request, Response& response,
+                                                     const httplib::ContentReader& reader) {
+            Request whole = request;
+            if (read(whole, response, reader, mostOf(entry, request))) handler(whole, response);
+        };
         const std::string_view method = entry.method;
         if (method == "GET") http->Get(entry.pattern, handler);
-        if (method == "POST") http->Post(entry.pattern, handler);
-        if (method == "PUT") http->Put(entry.pattern, handler);
+        if (method == "POST") http->Post(entry.pattern, withBody);
+        if (method == "PUT") http->Put(entry.pattern, withBody);
+    }
+
+    /// Much is taken of who is logged in alone.
+    std::size_t mostOf(const Entry& entry, const Request& request) {
+        if (entry.most <= school_wire::kMostMessage) return entry.most;
+        const std::string token = tokenOf(request);
+        const bool isKnown = !token.empty() && books.take()->personByToken(token, clock()).has_value();
+        return isKnown ? entry.most : school_wire::kMostMessage;
+    }
+
+    /// What was sent, as the library reads it by itself: but of forms more than 8 kB, and of each route no more than
+    /// its own `most`. What is beyond is read past and kept nowhere, so that the connection stays in step. False: it
+    /// was too long, which is answered, or broke off.
+    static bool read(Request& request, Response& response, const httplib::ContentReader& reader, std::size_t most) {
+        constexpr std::size_t kMostParts = 1000;
+        std::size_t bytes = 0;
+        std::string* into = &request.body;
+        const auto take = [&](const char* data, std::size_t size) {
+            bytes += size;
+            if (bytes <= most && into != nullptr) into->append(data, size);
+            return true;
+        };
+        if (request.is_multipart_form_data()) {
+            const auto begin = [&](const httplib::MultipartFormData& part) {
+                into = request.files.size() < kMostParts ? &request.files.emplace(part.name, part)->second.content
+                                                         : nullptr;
+                return true;
+            };
+            if (!reader(begin, take)) return false;
+        } else if (!reader(take)) {
+            return false;
+        }
+        if (bytes > most) {
+            response.status = 413;
+            return false;
+        }
+        if (request.get_header_value("Content-Type").starts_with("application/x-www-form-urlencoded"))
+            httplib::detail::parse_query_text(request.body, request.params);
+        return true;
     }
 
     void show(const Entry& entry, const Request& request, Response& response) {

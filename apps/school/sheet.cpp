@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -70,7 +71,10 @@ std::optional<double> numberIn(std::string text) {
 }
 
 std::string ratingWord(int rating) {
-    return words()(fmt::format("school-teaching.rating-{}", rating));
+    constexpr std::array kWords = {"school-teaching.rating-1", "school-teaching.rating-2", "school-teaching.rating-3",
+                                   "school-teaching.rating-4", "school-teaching.rating-5"};
+    static_assert(kWords.size() == static_cast<std::size_t>(kMostRating));
+    return words()(kWords.at(static_cast<std::size_t>(rating - 1)));
 }
 
 Sheet readSheet(const rubric::Rubric& rubric, const Fields& fields) {

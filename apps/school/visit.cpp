@@ -33,6 +33,10 @@ report::Looker lookerOf(const Visit& v) {
     const auto has = [&](Role role) { return std::find(roles.begin(), roles.end(), role) != roles.end(); };
     if (has(Role::teacher) || has(Role::examiner))
         ways.push_back({"/marking", config::words()("school-teaching.marking")});
+    if (has(Role::teacher)) {
+        ways.push_back({"/exercises", config::words()("school-teaching.exercises")});
+        ways.push_back({"/rubrics", config::words()("school-teaching.rubrics")});
+    }
     const auto office = [](const char* id) { return config::words()(std::string("school-office.") + id); };
     if (may(v, Action::managePeople, {})) ways.push_back({"/office/people", office("people")});
     if (may(v, Action::manageClasses, {})) ways.push_back({"/office/classes", office("classes")});

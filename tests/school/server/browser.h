@@ -56,6 +56,12 @@ class Browser {
     std::string cookie_;
 };
 
+/// A pattern's word without its backslashes.
+inline std::string plain(std::string word) {
+    std::erase(word, '\\');
+    return word;
+}
+
 /// A path that the route's pattern fits; `named`: what stands for a group, by its number from 0; else as many digits as
 /// it wants, or the first of several words.
 inline std::string pathOf(const std::string& pattern, const std::function<std::string(std::size_t)>& named = {}) {
@@ -71,7 +77,7 @@ inline std::string pathOf(const std::string& pattern, const std::function<std::s
         const std::string own = named ? named(group) : std::string();
         const std::size_t counted = inside.rfind('{');
         path += !own.empty()                      ? own
-                : inside.find('|') != inside.npos ? inside.substr(0, inside.find('|'))
+                : inside.find('|') != inside.npos ? plain(inside.substr(0, inside.find('|')))
                 : counted != inside.npos          ? std::string(std::stoul(inside.substr(counted + 1)), '2')
                                                   : std::string("2");
         ++group;

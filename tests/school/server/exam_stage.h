@@ -28,7 +28,7 @@ inline std::vector<std::string> holdExam(Books& books, const fs::path& data,
             exams.set(school::ExamCandidate{"ex1", one.person, exam::candidateHash("ex1", one.person),
                                             one.person == "s017" ? 25 : 0, 0, one.person == "s017" ? "guide" : ""},
                       act);
-    exams.set(school::ExamInvigilator{"ex1", "t1", "a hash"}, act);
+    exams.set(school::ExamInvigilator{"ex1", "t1", "a-hash"}, act);
     const school::ExamPack pack = signExam(books, "ex1", examKey(data), act);
     const std::string station(32, 'e');
     books.offerCode("exam-room-1-code", "exam room, 1", now + 1'000'000, act);

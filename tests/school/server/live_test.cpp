@@ -298,6 +298,18 @@ TEST(LiveBoard, WhatIsOldIsGone) {
         board.put(std::move(work));
     };
     put("one", 1000), put("two", 9000);
+    {
+        LiveBoard chairs;
+        for (const char* name : {"chair 10", "chair 2", "chair"}) {
+            LiveWork work;
+            work.station = work.stationName = name, work.classes = {"c1"};
+            chairs.put(std::move(work));
+        }
+        std::vector<std::string> names;
+        for (const auto& one : chairs.inClass("c1", 0))
+            names.push_back(one->stationName);
+        EXPECT_EQ(names, (std::vector<std::string>{"chair", "chair 2", "chair 10"}));
+    }
     const auto state = [&](school::Milliseconds now) { return board.of("one", now)->state(now); };
     EXPECT_EQ(state(1000), LiveWork::State::now);
     EXPECT_EQ(state(1000 + LiveBoard::kLateMs + 1), LiveWork::State::late);

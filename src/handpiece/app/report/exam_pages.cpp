@@ -46,7 +46,8 @@ std::string moreOf(const school::ExamCandidate& c) {
 /// A verdict, why, and the button.
 Form verdictForm(const Looker& who, const std::string& address, const char* button, bool needsWhy) {
     FormField verdict{"verdict", examWord("verdict"), "select"};
-    verdict.choices = {{"pass", examWord("pass")}, {"fail", examWord("fail")}, {"void", examWord("void")}};
+    verdict.choices = {
+        {"", "\u2013"}, {"pass", examWord("pass")}, {"fail", examWord("fail")}, {"void", examWord("void")}};
     verdict.isRequired = true;
     FormField why{"words", examWord("why"), "textarea"};
     why.isRequired = needsWhy;
@@ -132,6 +133,7 @@ std::string sittingPage(const Looker& who, const SittingView& view, const Names&
             if (!view.score->reason.empty())
                 page.paragraph(view.score->reason, view.score->state == "proven" ? Tone::note : Tone::bad);
             if (!view.score->result.empty()) page.link("/attempts/" + s.id + "/result", words()("school.whole-result"));
+            page.link("/attempts/" + s.id + "/review", words()("school-live.review"));
         }
     }
     if (view.seesWorth && view.seesDecisions) {

@@ -61,7 +61,7 @@ constexpr std::string_view kSiteStyle = R"(
 body { max-width: 1200px; margin-top: 0; }
 .skip { position: absolute; left: -99rem; } .skip:focus { left: 0.5rem; top: 0.5rem; background: #ffffff; padding: 0.4rem; }
 .site { display: flex; flex-wrap: wrap; gap: 0.3rem 1.2rem; align-items: center; border-bottom: 1px solid #c9ced6; padding: 0.5rem 0; margin-bottom: 1.2rem; }
-.site nav { display: flex; flex-wrap: wrap; gap: 0.3rem 1.2rem; flex: 1; } .site nav a[aria-current] { font-weight: 600; text-decoration: none; color: inherit; }
+.site nav { display: flex; flex-wrap: wrap; gap: 0.3rem 1.2rem; flex: 1 1 20rem; } .site nav a { white-space: nowrap; } .site nav a[aria-current] { font-weight: 600; text-decoration: none; color: inherit; }
 .site form, .site form p { margin: 0; display: inline; }
 input, button, select, textarea { font: inherit; padding: 0.3rem 0.6rem; color: inherit; background: #ffffff; border: 1px solid #767f8c; border-radius: 4px; }
 textarea { width: 100%; box-sizing: border-box; } button { cursor: pointer; background: #eef1f5; } button.grave { color: #a41b1b; border-color: #a41b1b; }
@@ -77,7 +77,7 @@ input, button, select, textarea { background: #1d232d; border-color: #8a93a3; } 
 constexpr std::string_view kLiveStyle = R"(
 body { max-width: none; }
 .tiles { list-style: none; padding: 0; display: grid; gap: 1rem; grid-template-columns: repeat(auto-fill, minmax(15rem, 1fr)); }
-.tiles.large { grid-template-columns: minmax(0, 70rem); }
+.tiles.large { grid-template-columns: minmax(0, 48rem); }
 .tiles > li { border: 2px solid #c9ced6; border-radius: 8px; padding: 0.4rem; } .tiles p { margin: 0.2rem 0; }
 .tiles a { display: block; } .tiles img { width: 100%; height: auto; aspect-ratio: 8 / 5; background: #22262e; display: block; }
 .flags { list-style: none; padding: 0; margin: 0.2rem 0; color: #c62828; font-weight: 600; } .unseen { position: absolute; clip-path: inset(50%); }

@@ -122,6 +122,7 @@ std::string classPage(const Looker& who, const school::ClassPage& of, const Name
 std::string personPage(const Looker& who, const std::string& person, const Names& names,
                        const std::vector<std::pair<school::PushedAttempt, std::optional<school::Score>>>& work) {
     HtmlReport page = sitePage(shownAs(names, person), who, "/people/" + person);
+    page.link("/people/" + person + "/curves", words()("school-teaching.results"));
     std::vector<std::vector<Cell>> rows;
     for (auto one = work.rbegin(); one != work.rend(); ++one) {
         const school::Attempt& a = one->first.attempt;

@@ -128,7 +128,8 @@ CREATE TABLE campaigns (
   rubric TEXT NOT NULL REFERENCES rubrics (hash), who TEXT NOT NULL, made INT8 NOT NULL) STRICT;
 CREATE INDEX campaigns_by_assignment ON campaigns (assignment);
 CREATE TABLE counting (
-  assignment TEXT PRIMARY KEY REFERENCES assignments (id), campaign TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+  assignment TEXT PRIMARY KEY REFERENCES assignments (id), campaign TEXT NOT NULL, first_rubric TEXT NOT NULL,
+  made INT8 NOT NULL) STRICT;
 CREATE TABLE estimates (
   assignment TEXT NOT NULL REFERENCES assignments (id), judge TEXT NOT NULL REFERENCES people (code),
   round INT8 NOT NULL CHECK (round IN (1, 2)), criterion TEXT NOT NULL, percent FLOAT8 NOT NULL, made INT8 NOT NULL,

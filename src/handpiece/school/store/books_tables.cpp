@@ -87,7 +87,7 @@ constexpr std::array kListed = {
     Listed{"marking_rules", "t assignment, r differ_percent, i made", "assignment", nullptr},
     Listed{"releases", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
     Listed{"campaigns", "t id, t assignment, t rubric, t who, i made", "id", "who = $1"},
-    Listed{"counting", "t assignment, t campaign, i made", "assignment", nullptr},
+    Listed{"counting", "t assignment, t campaign, t first_rubric, i made", "assignment", nullptr},
     Listed{"estimates", "t assignment, t judge, i round, t criterion, r percent, i made",
            "assignment, judge, round, criterion", "judge = $1"},
     Listed{"standards", "t id, t assignment, t method, t content, t who, i made", "id", "who = $1"},

@@ -93,7 +93,9 @@ std::vector<std::string> Teaching::worksOf(const std::string& assignment) const 
     Statement rows = state_.ask(
         "SELECT t.id FROM attempts t WHERE t.assignment = $1 AND t.id = (SELECT l.id FROM attempts l WHERE "
         "l.assignment = t.assignment AND l.person = t.person AND EXISTS (SELECT 1 FROM scores s WHERE s.attempt = "
-        "l.id) ORDER BY l.finished DESC, l.id DESC LIMIT 1) ORDER BY t.id",
+        "l.id) ORDER BY l.finished DESC, l.id DESC LIMIT 1) AND NOT EXISTS (SELECT 1 FROM exemplars e WHERE e.attempt "
+        "= "
+        "t.id) ORDER BY t.id",
         assignment);
     while (rows.next())
         all.push_back(rows.text(0));
@@ -247,6 +249,13 @@ std::set<std::string> Teaching::released(const std::string& assignment) const {
 
 // Re-scoring.
 
+void Teaching::pin(const std::string& assignment, const Act& act) {
+    state_.run(
+        "INSERT INTO counting (assignment, campaign, first_rubric, made) SELECT id, CAST($1 AS TEXT), rubric, "
+        "CAST($2 AS INT8) FROM assignments WHERE id = $3 ON CONFLICT DO NOTHING",
+        kArrival, act.at, assignment);
+}
+
 void Teaching::add(const Campaign& c, const Act& act) {
     if (c.id.empty() || c.id == kArrival) throw invalid("campaign", c.id, "give it a name of its own");
     Transaction transaction(*state_.database);
@@ -257,8 +266,7 @@ void Teaching::add(const Campaign& c, const Act& act) {
                     "DO NOTHING RETURNING id",
                     c.id, c.assignment, c.rubric, c.who, act.at))
         throw duplicate(*state_.database, "campaign", c.id);
-    state_.run("INSERT INTO counting (assignment, campaign, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING",
-               c.assignment, kArrival, act.at);
+    pin(c.assignment, act);
     state_.note(act, "begin rescore", c.assignment, fmt::format("{} by {}", c.id, c.rubric));
     transaction.commit();
 }
@@ -286,21 +294,17 @@ std::string Teaching::counting(const std::string& assignment) const {
 void Teaching::setCounting(const std::string& assignment, const std::string& campaign, const Act& act) {
     Transaction transaction(*state_.database);
     requireAssignment(assignment);
+    pin(assignment, act);
     std::string rubric;
-    if (campaign == kArrival) {
-        Statement row = state_.ask("SELECT p.rubric FROM packs p JOIN assignments a ON a.pack = p.hash WHERE a.id = $1",
-                                   assignment);
-        if (row.next()) rubric = row.text(0);
-    } else {
+    {
         Statement row =
-            state_.ask("SELECT rubric FROM campaigns WHERE id = $1 AND assignment = $2", campaign, assignment);
+            campaign == kArrival
+                ? state_.ask("SELECT first_rubric FROM counting WHERE assignment = $1", assignment)
+                : state_.ask("SELECT rubric FROM campaigns WHERE assignment = $1 AND id = $2", assignment, campaign);
         if (!row.next()) throw unknown(*state_.database, "campaign", campaign);
         rubric = row.text(0);
     }
-    state_.run(
-        "INSERT INTO counting (assignment, campaign, made) VALUES ($1, $2, $3) ON CONFLICT (assignment) DO UPDATE SET "
-        "campaign = excluded.campaign, made = excluded.made",
-        assignment, campaign, act.at);
+    state_.run("UPDATE counting SET campaign = $1, made = $2 WHERE assignment = $3", campaign, act.at, assignment);
     state_.run("UPDATE assignments SET rubric = $1 WHERE id = $2", rubric, assignment);
     state_.note(act, "set counting", assignment, fmt::format("{} by {}", campaign, rubric));
     transaction.commit();
@@ -324,18 +328,60 @@ std::vector<Score> Teaching::scores(const std::string& assignment, const std::st
     return all;
 }
 
-std::vector<PushedAttempt> Teaching::attempts(const std::string& assignment) const {
-    std::vector<std::string> ids;
-    {
-        Statement rows =
-            state_.ask("SELECT id FROM attempts WHERE assignment = $1 ORDER BY person, finished, id", assignment);
-        while (rows.next())
-            ids.push_back(rows.text(0));
+std::vector<Outcome> Teaching::outcomesWhere(const char* condition, const std::string& value, bool withResults) const {
+    std::vector<Outcome> all;
+    Statement rows = state_.ask(
+        fmt::format(
+            "SELECT t.id, t.person, t.assignment, t.exercise, t.exercise_hash, t.rubric_hash, t.session_hashes, "
+            "t.began, t.finished, t.received, t.device, t.motion_scale, t.score, t.max_score, t.whole_score, "
+            "t.passed, t.borderline, t.worked_s, t.limit_s, coalesce(s.job, -1), coalesce(s.campaign, ''), "
+            "coalesce(s.rubric, ''), coalesce(s.engine, 0), coalesce(s.state, ''), coalesce(s.reason, ''), "
+            "coalesce(s.state_hash, ''), coalesce(s.score, 0), coalesce(s.max_score, 0), "
+            "coalesce(s.whole_score, 0), coalesce(s.passed, ''), coalesce(s.borderline, 0), "
+            "coalesce(s.made, 0), {} FROM attempts t LEFT JOIN scores s ON s.job = {} WHERE {} "
+            "ORDER BY t.person, t.finished, t.id",
+            withResults ? "coalesce(s.result, '')" : "''", kCountingJob, condition)
+            .c_str(),
+        value);
+    while (rows.next()) {
+        Outcome one;
+        PushedAttempt& p = one.pushed;
+        Attempt& a = p.attempt;
+        a.id = rows.text(0), p.person = rows.text(1), p.assignment = rows.text(2);
+        a.exercise = rows.text(3), a.exerciseHash = rows.text(4), a.rubricHash = rows.text(5);
+        a.sessionHashes = partedLines(rows.text(6));
+        a.began = rows.integer(7), a.finished = rows.integer(8), p.received = rows.integer(9);
+        a.device = rows.text(10), a.motionScale = rows.number(11);
+        a.score = rows.number(12), a.maxScore = rows.number(13), a.wholeScore = rows.number(14);
+        a.passed = rows.text(15), a.borderline = rows.integer(16) != 0;
+        a.workedS = rows.number(17), a.limitS = rows.number(18);
+        if (rows.integer(19) >= 0)
+            one.score = Score{a.id,
+                              rows.text(20),
+                              rows.text(21),
+                              rows.integer(22),
+                              rows.text(23),
+                              rows.text(24),
+                              rows.text(25),
+                              rows.number(26),
+                              rows.number(27),
+                              rows.number(28),
+                              rows.text(29),
+                              rows.integer(30) != 0,
+                              rows.text(32),
+                              {},
+                              rows.integer(31)};
+        all.push_back(std::move(one));
     }
-    std::vector<PushedAttempt> all;
-    for (const std::string& id : ids)
-        if (std::optional<PushedAttempt> one = books_.attempt(id)) all.push_back(std::move(*one));
     return all;
+}
+
+std::vector<Outcome> Teaching::outcomes(const std::string& schoolClass, bool withResults) const {
+    return outcomesWhere("t.assignment IN (SELECT id FROM assignments WHERE class = $1)", schoolClass, withResults);
+}
+
+std::vector<Outcome> Teaching::outcomesOf(const std::string& person, bool withResults) const {
+    return outcomesWhere("t.person = $1", person, withResults);
 }
 
 // Standards.
@@ -407,6 +453,7 @@ void Teaching::set(const Exemplar& e, const Act& act) {
 
 void Teaching::removeExemplar(const std::string& attempt, const Act& act) {
     Transaction transaction(*state_.database);
+    state_.run("DELETE FROM calibrations WHERE attempt = $1", attempt);
     if (!state_.any("DELETE FROM exemplars WHERE attempt = $1 RETURNING attempt", attempt))
         throw unknown(*state_.database, "exemplar", attempt);
     state_.note(act, "remove exemplar", attempt);

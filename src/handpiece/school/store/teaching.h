@@ -41,6 +41,12 @@ struct Campaign {
 /// What was scored as work arrived.
 inline constexpr const char* kArrival = "arrival";
 
+/// An attempt with the score that counts.
+struct Outcome {
+    PushedAttempt pushed{};        ///< without its files and what its station says in detail
+    std::optional<Score> score{};  ///< none: the server has not looked at it yet
+};
+
 /// One judge's share of borderline students [%] who would have a criterion.
 struct AngoffEstimate {
     std::string judge{};
@@ -68,7 +74,7 @@ struct Calibration {
 
 class Teaching : private BooksRoom {
   public:
-    explicit Teaching(Books& books) : BooksRoom(books), books_(books) {}
+    explicit Teaching(Books& books) : BooksRoom(books) {}
 
     // Exercises, rubrics, assignments.
     [[nodiscard]] std::vector<Pack> packs() const;
@@ -80,7 +86,8 @@ class Teaching : private BooksRoom {
     void setTimes(const std::string& assignment, Milliseconds opens, Milliseconds closes, const Act& act);
 
     // Marking.
-    /// The last attempt of each student that the server has looked at, by their ids.
+    /// The last attempt of each student that the server has looked at, by their ids; without exemplars, whose marks are
+    /// known to who marks.
     [[nodiscard]] std::vector<std::string> worksOf(const std::string& assignment) const;
     [[nodiscard]] std::optional<MarkingDesk> desk(const std::string& assignment, const std::string& marker) const;
     [[nodiscard]] std::vector<MarkingDesk> desks(const std::string& assignment) const;
@@ -113,7 +120,10 @@ class Teaching : private BooksRoom {
     void setCounting(const std::string& assignment, const std::string& campaign, const Act& act);
     /// Of each attempt the one of this campaign; empty: the one that counts.
     [[nodiscard]] std::vector<Score> scores(const std::string& assignment, const std::string& campaign = {}) const;
-    [[nodiscard]] std::vector<PushedAttempt> attempts(const std::string& assignment) const;
+    /// Of a class, by person and when they were finished. `withResults`: with the scores' whole results.
+    [[nodiscard]] std::vector<Outcome> outcomes(const std::string& schoolClass, bool withResults) const;
+    /// Of a person.
+    [[nodiscard]] std::vector<Outcome> outcomesOf(const std::string& person, bool withResults) const;
 
     // Standards.
     /// In the place of what the judge said in that round.
@@ -131,8 +141,11 @@ class Teaching : private BooksRoom {
     [[nodiscard]] std::vector<Calibration> calibrations(const std::string& assignment) const;
 
   private:
+    [[nodiscard]] std::vector<Outcome> outcomesWhere(const char* condition, const std::string& value,
+                                                     bool withResults) const;
     void requireAssignment(const std::string& id) const;
-    Books& books_;
+    /// In a transaction that writes: what counts is written down, unless it is.
+    void pin(const std::string& assignment, const Act& act);
 };
 
 }  // namespace handpiece::school

@@ -18,10 +18,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What will be refused tomorrow as well.
+/// What the server itself will refuse tomorrow as well. An answer that cannot be read came damaged, or from somebody
+/// else; and a file that arrived as another one was written by two at once (a connection that was cut, and the next):
+/// both go again.
 bool isFinal(const core::Error& error) {
-    constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged", "upload-mismatch"};
-    return std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
+    constexpr std::string_view kFinal[] = {"books-changed", "books-invalid", "message-damaged"};
+    return error.where().starts_with(school_wire::kServer) &&
+           std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
 }
 
 class Pusher {

@@ -272,7 +272,7 @@ std::string toJson(const core::Error& e) {
 core::Error errorFrom(std::string_view json, int status) {
     try {
         const Message m(json);
-        return core::Error(m.text("what"), "the school's server: " + m.text("where"), m.text("remedy"))
+        return core::Error(m.text("what"), std::string(kServer) + ": " + m.text("where"), m.text("remedy"))
             .as(m.text("error"), m.texts("arguments"));
     } catch (const core::Error&) {
         return core::Error(fmt::format("it answers {} and nothing that can be read", status), "the school's server",

@@ -100,6 +100,8 @@ struct Watched {
 [[nodiscard]] std::string toJson(const Watched& watched);
 [[nodiscard]] Watched watchedFrom(std::string_view json);
 
+/// Where an error was that the other side told.
+inline constexpr std::string_view kServer = "the school's server";
 /// An error as the other side tells it, and back: what, where, what to do, and its name.
 [[nodiscard]] std::string toJson(const core::Error& error);
 [[nodiscard]] core::Error errorFrom(std::string_view json, int status);

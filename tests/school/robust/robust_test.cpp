@@ -269,6 +269,11 @@ class RobustTest : public testing::TestWithParam<const char*> {
     void expectAllOnce() {
         const Books open = books();
         std::size_t found = 0;
+        std::stringstream all;
+        all << std::ifstream(log()).rdbuf();
+        const std::string text = all.str();
+        const std::size_t refused = text.find("refused:");
+        EXPECT_EQ(refused, std::string::npos) << text.substr(std::min(refused, text.size()), 400);
         for (std::size_t i = 0; i < chairs_.size(); ++i)
             for (const school::PushedAttempt& one : open.attemptsOf(fmt::format("s{:03}", i))) {
                 ++found;
@@ -284,8 +289,8 @@ class RobustTest : public testing::TestWithParam<const char*> {
         std::set<std::string> hashes;
         for (const auto& [id, hash] : expected_)
             hashes.insert(hash);
-        const std::vector<std::string> all = open.files().all();
-        EXPECT_EQ(std::set<std::string>(all.begin(), all.end()), hashes);
+        const std::vector<std::string> there = open.files().all();
+        EXPECT_EQ(std::set<std::string>(there.begin(), there.end()), hashes);
     }
     fs::path log() const { return folder_.path() / "log"; }
     std::string logged() const {

@@ -29,7 +29,6 @@ class SecurityTest : public PagesTest {
             if (is("/people/") || is("/office/people/")) return "s017";
             if (pattern.find("/classes/") != pattern.npos) return "c1";
             if (is("/attempts/")) return assigned_;
-            if (is("/assignments/")) return "as1";
             if (is("/office/stations/")) return std::string(32, 'c');
             return {};
         });

@@ -194,6 +194,19 @@ TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
     EXPECT_EQ(books().progress("arrival").waiting, 90);
 }
 
+TEST_F(SchoolTest, AFileWhoseServerWasKilledBeforeItProvedItIsProvenThen) {
+    School school(data());
+    Chair chair;
+    const std::string attempt = chair.finish(session(), "one.h5");
+    Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
+    const std::string hash = school::sha256Of(session());
+    // All bytes had come, and nothing more happened.
+    fs::copy_file(session(), data() / "uploads" / (enrolment.station + "-" + hash));
+    EXPECT_EQ(chair.push(enrolment).attempts, 1u);
+    EXPECT_TRUE(books().files().has(hash));
+    EXPECT_EQ(books().progress("arrival").waiting, 1);
+}
+
 TEST_F(SchoolTest, StrangersGetNothing) {
     School school(data());
     httplib::Client http(school.address());

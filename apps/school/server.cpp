@@ -3,7 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <string_view>
 #include <variant>
 
@@ -64,6 +66,7 @@ struct Server::State : Service {
             throw core::Error(fmt::format("nobody can listen at {}:{}", settings.host, settings.port), "--listen",
                               "another program is there, or the address is none of this machine's: give another one")
                 .as("port-taken", {settings.host, std::to_string(settings.port)});
+        letManyWait();
         guard = std::make_unique<SlowGuard>(port, settings.slow);
         for (std::size_t i = 0; i < settings.workers; ++i)
             workers.push_back(std::make_unique<Worker>(WorkerSettings{settings.data, settings.database}, clock));
@@ -80,7 +83,19 @@ struct Server::State : Service {
         return server;
     }
 
+    /// The library lets five wait to be taken, and the system turns away some of those that come beside them: a room
+    /// that begins at once is more. Of the socket that was bound last, which is the one that listens.
+    void letManyWait() const {
+        constexpr int kMostWaiting = 1024;
+        if (::listen(listening, kMostWaiting) != 0)
+            std::fprintf(stderr, "handpiece-school: few may wait to be taken: %s\n", std::strerror(errno));
+    }
+
     void configure() {
+        http->set_socket_options([this](socket_t socket) {
+            httplib::default_socket_options(socket);
+            listening = socket;
+        });
         http->new_task_queue = [threads = settings.threads] { return new GrowingPool(threads); };
         // Each route has its own bound (read()); beyond that of all of them the library answers by itself.
         std::size_t most = std::max(school_wire::kMostMessage, school_wire::kMostPiece);
@@ -208,6 +223,7 @@ struct Server::State : Service {
     }
 
     std::unique_ptr<httplib::Server> http;
+    socket_t listening = INVALID_SOCKET;
     int port = -1;
     std::unique_ptr<SlowGuard> guard;
     std::vector<std::unique_ptr<Worker>> workers;

@@ -183,7 +183,8 @@ void HtmlReport::table(const std::vector<std::string>& header, const std::vector
 
 void HtmlReport::linkedTable(const std::vector<std::string>& header, const std::vector<std::vector<Cell>>& rows,
                              std::string_view caption) {
-    body_ += "<div class=\"scroll\"><table>";
+    // A wide table is moved by the keys, too.
+    body_ += "<div class=\"scroll\" tabindex=\"0\"><table>";
     if (!caption.empty()) body_ += fmt::format("<caption>{}</caption>", escaped(caption));
     if (!header.empty()) {
         body_ += "<thead><tr>";

@@ -65,7 +65,7 @@ body { max-width: 1200px; margin-top: 0; }
 .site form, .site form p { margin: 0; display: inline; }
 input, button, select, textarea { font: inherit; padding: 0.3rem 0.6rem; color: inherit; background: #ffffff; border: 1px solid #767f8c; border-radius: 4px; }
 textarea { width: 100%; box-sizing: border-box; } button { cursor: pointer; background: #eef1f5; } button.grave { color: #a41b1b; border-color: #a41b1b; }
-:focus-visible { outline: 3px solid #0b62a4; outline-offset: 1px; }
+:focus-visible, input:focus-within { outline: 3px solid #0b62a4; outline-offset: 1px; }
 .field label { display: inline-block; min-width: 11rem; } .tick { display: flex; flex-direction: row-reverse; justify-content: flex-end; gap: 0.4rem; flex-wrap: wrap; }
 fieldset { border: 1px solid #c9ced6; border-radius: 6px; margin: 0.8rem 0; } .choice label { margin-right: 1.2rem; }
 @media (prefers-color-scheme: dark) { .site, fieldset { border-color: #3a4250; } .skip:focus { background: #14181f; }
@@ -256,7 +256,14 @@ void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std
 }
 
 void HtmlReport::figure(std::string_view svg, std::string_view caption) {
-    body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escaped(caption));
+    // Who does not see it hears its caption.
+    std::string drawn(svg);
+    constexpr std::string_view kRole = "role=\"img\"";
+    const std::size_t at = drawn.find(kRole);
+    if (at < drawn.find('>') && drawn.substr(0, drawn.find('>')).find("aria-label") == std::string::npos)
+        drawn.insert(at + kRole.size(),
+                     fmt::format(" aria-label=\"{}\"", escaped(caption.empty() ? std::string_view(title_) : caption)));
+    body_ += fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", drawn, escaped(caption));
 }
 
 void HtmlReport::picture(const std::filesystem::path& png, std::string_view caption) {

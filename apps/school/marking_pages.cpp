@@ -87,7 +87,9 @@ Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fie
     page.paragraph(words()("school-teaching.work-of", found.place + 1, found.items.size()), Tone::note);
     if (!told.empty()) page.paragraph(told, Tone::good);
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
+    page.begin(HtmlReport::Group::beside);
     addPicture(page, v, found.attempt, of.assignment.pack, taskOf, pictures);
+    page.begin(HtmlReport::Group::part);
     page.heading(words()("school-teaching.your-marks"));
     if (isIn) {
         page.paragraph(words()("school-teaching.is-in"), Tone::good);
@@ -117,6 +119,8 @@ Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fie
         page.form(form);
         page.paragraph(words()("school-teaching.give-in-about"), Tone::note);
     }
+    page.end();
+    page.end();
     if (found.place + 1 < found.items.size())
         page.link(at(of.assignment.id, "/marking/" + found.items[found.place + 1].code),
                   words()("school-teaching.next-work"));
@@ -146,7 +150,9 @@ Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAt
     page.link("/attempts/" + attempt.attempt.id, words()("school-teaching.attempt"));
     page.link("/attempts/" + attempt.attempt.id + "/review", words()("school-live.review"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
+    page.begin(HtmlReport::Group::beside);
     addPicture(page, v, attempt, of.assignment.pack, taskOf, pictures);
+    page.begin(HtmlReport::Group::part);
     page.heading(words()("school-teaching.markers-said"));
     std::vector<school::Mark> all = settled.markers;
     if (settled.adjudication) all.push_back(*settled.adjudication);
@@ -186,6 +192,8 @@ Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAt
         form.fields.push_back(std::move(field));
     form.buttons = {{words()("school-teaching.adjudicate")}};
     page.form(form);
+    page.end();
+    page.end();
     return {wrong.empty() ? 200 : 422, page.text()};
 }
 

@@ -70,6 +70,10 @@ textarea { width: 100%; box-sizing: border-box; } button { cursor: pointer; back
 fieldset { border: 1px solid #c9ced6; border-radius: 6px; margin: 0.8rem 0; } .choice label { margin-right: 1.2rem; }
 @media (prefers-color-scheme: dark) { .site, fieldset { border-color: #3a4250; } .skip:focus { background: #14181f; }
 input, button, select, textarea { background: #1d232d; border-color: #8a93a3; } button.grave { color: #ff7b72; border-color: #ff7b72; } }
+table:not(:has(thead)) { width: auto; } table:not(:has(thead)) td.n { text-align: left; }
+.beside { display: grid; grid-template-columns: minmax(0, 1fr) minmax(0, 1fr); gap: 1.4rem; align-items: start; } .beside > figure { position: sticky; top: 0.5rem; }
+.part > h2:first-child { margin-top: 0; }
+@media (max-width: 900px) { .beside { grid-template-columns: minmax(0, 1fr); } .beside > figure { position: static; } }
 @media print { .site { display: none; } }
 )";
 
@@ -321,7 +325,7 @@ void HtmlReport::live(std::string_view html) {
 }
 
 void HtmlReport::begin(Group group) {
-    constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds"};
+    constexpr std::array kClasses{"columns", "pictures", "slices", "frame", "thirds", "beside", "part"};
     body_ += fmt::format("<div class=\"{}\">\n", kClasses[static_cast<std::size_t>(group)]);
 }
 

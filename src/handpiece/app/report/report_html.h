@@ -25,8 +25,9 @@ namespace handpiece::report {
 class HtmlReport {
   public:
     enum class Tone { plain, note, good, bad, missing };
-    /// What stands side by side, or in a frame.
-    enum class Group { columns, pictures, slices, frame, thirds };
+    /// What stands side by side, or in a frame. `beside` (of a server's page): a picture that stays in sight, and the
+    /// `part` that is read or filled in beside it; one under the other where there is no room.
+    enum class Group { columns, pictures, slices, frame, thirds, beside, part };
     struct Chip {
         std::array<std::uint8_t, 3> colour;
         std::string name;

@@ -88,7 +88,11 @@ void answer(Response& response, Page&& page, bool secure) {
 }
 
 std::string tokenOf(const Request& request) {
-    const std::string cookies = request.get_header_value("Cookie"), name = std::string(kCookie) + "=";
+    return secretInCookie(request, kCookie);
+}
+
+std::string secretInCookie(const Request& request, const std::string& cookie) {
+    const std::string cookies = request.get_header_value("Cookie"), name = cookie + "=";
     for (std::size_t at = 0; at < cookies.size();) {
         const std::size_t end = std::min(cookies.find(';', at), cookies.size());
         std::string_view one = std::string_view(cookies).substr(at, end - at);

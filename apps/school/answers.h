@@ -19,6 +19,8 @@ void answer(httplib::Response& response, const core::Error& error);
 void answer(httplib::Response& response, Page&& page, bool secure);
 /// Of the log-in's cookie; empty: there is none.
 [[nodiscard]] std::string tokenOf(const httplib::Request& request);
+/// The first of this name that is as long as school::newSecret() is; empty: there is none.
+[[nodiscard]] std::string secretInCookie(const httplib::Request& request, const std::string& cookie);
 /// What a form sent, whichever way it is encoded; empty: nothing.
 [[nodiscard]] std::string sentBy(const httplib::Request& request, const char* name);
 /// Throws core::Error "message-damaged" for what is no whole number.

@@ -21,14 +21,6 @@ using school::Teaching;
 using Cell = HtmlReport::Cell;
 using Tone = HtmlReport::Tone;
 
-std::string markText(const rubric::Rubric& rubric, const Sheet& sheet, const std::string& id) {
-    const auto mark = sheet.marks.find(id);
-    if (mark == sheet.marks.end()) return "\u2013";
-    if (mark->second.cannotTell) return words()("school-teaching.cannot-tell");
-    if (mark->second.points) return fmt::format("{:g}", *mark->second.points);
-    return report::bandTitle(rubric, mark->second.band);
-}
-
 /// Marker and consensus beside each other.
 void addComparison(HtmlReport& page, const rubric::Rubric& rubric, const Sheet& own, const Sheet& consensus,
                    const std::string& caption) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <chrono>
 
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/assess/rubric/rubric.h"
@@ -42,16 +43,14 @@ std::optional<Milliseconds> momentIn(const std::string& typed) {
     // Seconds may stand behind.
     if (at != end && *at != ':') return {};
     const auto [year, month, day, hour, minute] = std::tie(part[0], part[1], part[2], part[3], part[4]);
-    const bool isLeap = year % 4 == 0 && (year % 100 != 0 || year % 400 == 0);
-    constexpr int kDays[] = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
-    if (year < 1970 || year > 9999 || month < 1 || month > 12 || day < 1 ||
-        day > kDays[month - 1] + (month == 2 && isLeap ? 1 : 0) || hour < 0 || hour > 23 || minute < 0 || minute > 59)
+    if (year < 1970 || year > 9999 || month < 1 || month > 12 || day < 1 || day > 31 || hour < 0 || hour > 23 ||
+        minute < 0 || minute > 59)
         return {};
-    // H. Hinnant's days_from_civil.
-    const std::int64_t y = year - (month <= 2 ? 1 : 0), era = y / 400, ofEra = y - era * 400;
-    const std::int64_t ofYear = (153 * (month + (month > 2 ? -3 : 9)) + 2) / 5 + day - 1;
-    const std::int64_t days = era * 146'097 + ofEra * 365 + ofEra / 4 - ofEra / 100 + ofYear - 719'468;
-    return ((days * 24 + hour) * 60 + minute) * 60'000;
+    using namespace std::chrono;
+    const year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                              std::chrono::day(static_cast<unsigned>(day))};
+    if (!date.ok()) return {};
+    return duration_cast<milliseconds>(sys_days(date).time_since_epoch() + hours(hour) + minutes(minute)).count();
 }
 std::string typedOf(Milliseconds moment) {
     std::string text = report::momentOf(moment);

@@ -96,14 +96,10 @@ Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fie
         std::vector<std::vector<std::string>> rows;
         const Sheet sheet = readSheet(of.rubric, typed);
         for (const std::string& id : marking::askedOf(of.rubric)) {
-            const auto mark = sheet.marks.find(id);
-            if (mark == sheet.marks.end()) continue;
+            if (!sheet.marks.contains(id)) continue;
             rows.push_back(
                 {id == marking::kTotal ? words()("agreement.all-points") : report::criterionTitle(of.rubric, id),
-                 mark->second.cannotTell ? words()("school-teaching.cannot-tell")
-                 : mark->second.points   ? fmt::format("{:g}", *mark->second.points)
-                                         : report::bandTitle(of.rubric, mark->second.band),
-                 fieldOf(typed, "c." + id)});
+                 markText(of.rubric, sheet, id), fieldOf(typed, "c." + id)});
         }
         rows.push_back({words()("class.verdict"), verdictText(sheet.verdict), fieldOf(typed, "comment")});
         if (sheet.rating > 0) rows.push_back({words()("school-teaching.rating"), ratingWord(sheet.rating), ""});

@@ -172,6 +172,14 @@ std::vector<report::FormField> sheetFields(const rubric::Rubric& rubric, const F
     return all;
 }
 
+std::string markText(const rubric::Rubric& rubric, const Sheet& sheet, const std::string& id) {
+    const auto mark = sheet.marks.find(id);
+    if (mark == sheet.marks.end()) return "\u2013";
+    if (mark->second.cannotTell) return words()("school-teaching.cannot-tell");
+    if (mark->second.points) return fmt::format("{:g}", *mark->second.points);
+    return report::bandTitle(rubric, mark->second.band);
+}
+
 std::string sheetJson(const Fields& fields) {
     nlohmann::json json = nlohmann::json::object();
     for (const auto& [name, value] : fields)

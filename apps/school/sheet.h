@@ -40,6 +40,8 @@ struct Sheet {
 /// The fields of the form, with what is typed and what is wrong.
 [[nodiscard]] std::vector<report::FormField> sheetFields(const rubric::Rubric& rubric, const Fields& typed,
                                                          const std::map<std::string, std::string>& wrong);
+/// In words: points, a band's title, that it cannot be told, or a dash.
+[[nodiscard]] std::string markText(const rubric::Rubric& rubric, const Sheet& sheet, const std::string& id);
 /// As the books keep it, half of it too; and back. Only fields of a sheet are in it.
 [[nodiscard]] std::string sheetJson(const Fields& fields);
 [[nodiscard]] Fields parseSheet(const std::string& json);

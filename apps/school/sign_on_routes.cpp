@@ -22,19 +22,6 @@ using httplib::Response;
 
 constexpr const char* kLaunchCookie = "handpiece-lti";
 
-std::string cookieOf(const Request& request, const std::string& name) {
-    const std::string all = request.get_header_value("Cookie");
-    for (std::size_t from = 0; from < all.size();) {
-        const std::size_t end = std::min(all.find(';', from), all.size());
-        std::string_view one = std::string_view(all).substr(from, end - from);
-        while (one.starts_with(' '))
-            one.remove_prefix(1);
-        if (one.starts_with(name + "=")) return std::string(one.substr(name.size() + 1, 200));
-        from = end + 1;
-    }
-    return {};
-}
-
 /// What leaves a trace whoever asks: not as fast as they ask.
 void noteRefusal(Service& of, const std::string& what, const std::string& from, const std::string& why) {
     {
@@ -127,7 +114,7 @@ void launchHere(Service& of, const Request& request, Response& response) {
         {
             auto open = of.books.take();
             launch = takeLaunch(*open, request.get_param_value("id_token"), request.get_param_value("state"),
-                                cookieOf(request, kLaunchCookie), of.clock());
+                                secretInCookie(request, kLaunchCookie), of.clock());
         }
         answer(response, welcome(of, launch->person, launch->to, "LTI 1.3"), isSecureAddress(of));
     } catch (const core::Error& e) {

@@ -234,8 +234,10 @@ struct ReviewGatherer::State {
         });
         now = uncut;
         isChanged.resize(grid->bricks());
-        const auto bounds = toothBoundsMm();
-        around = aroundOf(of.toothCase(), bounds.first, bounds.second);
+        if (!of.toothCase().others.empty() || !of.toothCase().scenery.empty()) {
+            const auto [lowMm, highMm] = toothBoundsMm();
+            around = aroundOf(of.toothCase(), lowMm, highMm);
+        }
         if (!around.parts.empty()) notes.push_back(words().text("review.around-uncut"));
     }
 

@@ -6,8 +6,20 @@
 
 #include "desktop/framework/application.h"
 
+namespace {
+
+QtMessageHandler others = nullptr;
+
+/// The platform without a screen says at every window what it cannot do: thousands of lines, in which a failure drowns.
+void withoutThePlatformsExcuses(QtMsgType type, const QMessageLogContext& context, const QString& text) {
+    if (!text.startsWith(QLatin1String("This plugin does not support "))) others(type, context, text);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
     ::testing::InitGoogleTest(&argc, argv);
+    others = qInstallMessageHandler(withoutThePlatformsExcuses);
     const QTemporaryDir home;
     for (const char* name : {"XDG_CONFIG_HOME", "XDG_DATA_HOME", "XDG_CACHE_HOME"})
         qputenv(name, home.path().toLocal8Bit());

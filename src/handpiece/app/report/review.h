@@ -70,8 +70,7 @@ class ReviewGatherer {
                                 std::size_t mostBytes = kMostReviewBytes) const;
 
   private:
-    struct State;
-    std::unique_ptr<State> state_;
+    std::unique_ptr<struct Gathered> gathered_;
 };
 
 /// A session of a chain.

@@ -307,7 +307,7 @@ TEST_F(LockTest, WithoutLocksTheWalkFindsEveryHelp) {
     ASSERT_TRUE(waitFor([this] { return !simulator().status().cut && !simulator().status().restoring; }));
     // What a busy machine has not done yet when it is looked at, another walk finds; undo and reset stand in the
     // recording.
-    for (int walk = 0; walk < 3 && open_.size() + 2 < all().size(); ++walk)
+    for (int walk = 0; walk < 10 && open_.size() + 2 < all().size(); ++walk)
         tryEverything();
     lookIntoTheRecording();
     EXPECT_EQ(open_, all()) << "what it does not find it could not find locked either";

@@ -16,12 +16,12 @@ namespace {
 
 struct BackupOptions {
     std::string data, database, file;
-    bool onlyCheck = false;
+    bool onlyCheck = false, withoutKeys = false;
 };
 
 void tell(const school::Backup& backup, const char* what) {
-    fmt::print("{}: {} rows, {} files ({:.1f} MB)\n", what, backup.rows, backup.files,
-               1e-6 * static_cast<double>(backup.bytes));
+    fmt::print("{}: {} rows, {} files ({:.1f} MB), {} keys\n", what, backup.rows, backup.files,
+               1e-6 * static_cast<double>(backup.bytes), backup.keys);
 }
 
 }  // namespace
@@ -35,13 +35,14 @@ void addBackupCommands(cli::Command& app) {
     };
     cli::Command backup = app.subcommand("backup", "The school in one file, while its server goes on");
     books(backup);
-    backup.option("FILE", o.file, "the zip: it has names and passwords' hashes in it").required();
+    backup.option("FILE", o.file, "the zip: it has names, passwords' hashes and the server's keys in it").required();
+    backup.flag("--without-keys", o.withoutKeys, "leave out the keys by which the server signs (exam.key, lti.pem)");
     backup.callback([options] {
         const BackupOptions& of = *options;
         studies::ProgressBar bar("packing");
         const SchoolSettings place = placeOfBooks(of.data, of.database);
         const school::Backup made = school::backUp(place.data, place.database, of.file, school_server::systemClock()(),
-                                                   HANDPIECE_VERSION, bar.listener());
+                                                   HANDPIECE_VERSION, !of.withoutKeys, bar.listener());
         bar.finish();
         tell(made, of.file.c_str());
     });

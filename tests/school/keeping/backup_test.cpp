@@ -47,7 +47,7 @@ class BackupTest : public BooksTest {
         books->push(Comment{id(900), id(1), "t1", "no place", {}, {}, kNow});
         books->addLogin(std::string(64, 'a'), "t1", kNow + kDay, kAdmin);
     }
-    Backup make() const { return backUp(data_, address_, file_, kNow, "0.0.0"); }
+    Backup make() const { return backUp(data_, address_, file_, kNow, "0.0.0", true); }
     /// Into a new school of the other kind, or the same.
     std::string restored(bool intoPostgres, const fs::path& to) {
         std::string address;
@@ -103,6 +103,36 @@ TEST_P(BackupTest, AllOfItComesBackAlsoIntoTheOtherDatabase) {
     EXPECT_EQ(contentOf(Books(fresh)), before);
 }
 
+TEST_P(BackupTest, TheServersKeysGoAlongAndWhatIsThereIsNotLost) {
+    const auto keyAt = [](const fs::path& folder, const char* name) {
+        const auto bytes = core::readFile(folder / name);
+        return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    };
+    EXPECT_EQ(make().keys, 0) << "a school without exams has none";
+    core::writeFile(data_ / "exam.key", std::string("exam's"), {.ownerOnly = true});
+    core::writeFile(data_ / "lti.pem", std::string("platform's"), {.ownerOnly = true});
+    EXPECT_EQ(make().keys, 2);
+    EXPECT_EQ(checkBackup(file_).keys, 2);
+    const fs::path to = folder_.path() / "to";
+    // Of a server that was begun here: it made itself one.
+    fs::create_directories(to);
+    core::writeFile(to / "exam.key", std::string("new one's"), {.ownerOnly = true});
+    (void)restored(false, to);
+    EXPECT_EQ(keyAt(to, "exam.key"), "exam's");
+    EXPECT_EQ(keyAt(to, "lti.pem"), "platform's");
+    EXPECT_EQ(keyAt(to, "exam.key.before-restore-1"), "new one's");
+    for (const char* name : {"exam.key", "lti.pem", "exam.key.before-restore-1"})
+        EXPECT_EQ(fs::status(to / name).permissions(), fs::perms::owner_read | fs::perms::owner_write) << name;
+    // Refused, because it is not empty: its keys stay.
+    core::writeFile(to / "exam.key", std::string("today's"), {.ownerOnly = true});
+    EXPECT_THAT(errorOf([&] { (void)restore(file_, to, {}); }), HasSubstr("store-not-empty"));
+    EXPECT_EQ(keyAt(to, "exam.key"), "today's");
+    EXPECT_EQ(backUp(data_, address_, file_, kNow, "0.0.0", false).keys, 0) << "left out where that is asked for";
+    const fs::path without = folder_.path() / "without";
+    (void)restored(false, without);
+    EXPECT_FALSE(core::isThere(without / "exam.key"));
+}
+
 TEST_P(BackupTest, IsOneStateWhileOthersWrite) {
     std::atomic<bool> ends{false};
     std::atomic<int> pushed{0};
@@ -149,7 +179,8 @@ TEST(Backup, ADamagedOneIsFoundAndNothingIsRestored) {
         upload(books, std::string(3000, 's'));
         books.push(attempt(1, {std::string(3000, 's')}));
     }
-    (void)backUp(data, {}, file, kNow, "0.0.0");
+    core::writeFile(data / "exam.key", std::string("a key"), {.ownerOnly = true});
+    (void)backUp(data, {}, file, kNow, "0.0.0", true);
     const std::vector<std::byte> good = core::readFile(file);
     const cases::PackageFiles parts = cases::readPackage(good, "school.zip");
     const auto refused = [&](const std::string& what) {
@@ -205,6 +236,10 @@ TEST(Backup, ADamagedOneIsFoundAndNothingIsRestored) {
     EXPECT_THAT(refused("another table"), HasSubstr("tables/people.tsv"));
     with([&](auto& p) { p.erase("tables/audit.tsv"); });
     EXPECT_THAT(refused("a table less"), HasSubstr("tables/audit.tsv"));
+    with([&](auto& p) { p["keys/exam.key"][0] ^= std::byte{1}; });
+    EXPECT_THAT(refused("another key"), AllOf(HasSubstr("store-damaged"), HasSubstr("keys/exam.key")));
+    with([&](auto& p) { p.erase("keys/exam.key"); });
+    EXPECT_THAT(refused("a key less"), HasSubstr("keys/exam.key in this backup is missing"));
     with([&](auto& p) { p.erase("backup.toml"); });
     EXPECT_THAT(refused("no manifest"), HasSubstr("no backup of a school"));
     with([&](auto& p) { p["backup.toml"] = text("format = 9\n"); });
@@ -214,6 +249,10 @@ TEST(Backup, ADamagedOneIsFoundAndNothingIsRestored) {
     newer.replace(newer.find("books = "), 9, "books = 99");
     with([&](auto& p) { p["backup.toml"] = text(newer); });
     EXPECT_THAT(refused("newer books"), HasSubstr("store-newer"));
+    std::string foreign = manifest;
+    foreign.replace(foreign.find("\"exam.key\""), 10, "\"../a.key\"");
+    with([&](auto& p) { p["backup.toml"] = text(foreign); });
+    EXPECT_THAT(refused("a key that leads out"), HasSubstr("names a key that is none"));
     std::string evil = manifest;
     evil.replace(evil.find("\"people\""), 8, "\"../../x\"");
     with([&](auto& p) { p["backup.toml"] = text(evil); });

@@ -22,6 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFormat = 1;
 constexpr const char* kManifest = "backup.toml";
+constexpr std::size_t kMostKey = 1 << 16;
 
 /// In a folder: on the same disk, so that files are moved and linked. Goes with all that is in it.
 class Workplace {
@@ -54,6 +55,7 @@ std::vector<std::byte> bytesOf(std::string_view text) {
 struct Manifest {
     BooksCopy copy;
     std::map<std::string, std::string> hashes;  ///< of tables' files, by their names
+    std::map<std::string, std::string> keys;    ///< likewise
 };
 
 Manifest manifestOf(const cases::LargePackage& package, const fs::path& file) {
@@ -80,6 +82,12 @@ Manifest manifestOf(const cases::LargePackage& package, const fs::path& file) {
         if (!isPlain) throw damaged(file, kManifest, "names a table that is none");
         manifest.copy.tables.push_back({name, one.integer("rows").value_or(-1)});
         manifest.hashes[name] = one.text("sha256").value_or("");
+    }
+    for (const config::Table& one : toml.tables("key")) {
+        const std::string name = one.text("name").value_or("");
+        if (std::find(std::begin(kServerKeys), std::end(kServerKeys), name) == std::end(kServerKeys))
+            throw damaged(file, kManifest, "names a key that is none");
+        manifest.keys[name] = one.text("sha256").value_or("");
     }
     std::int64_t files = 0;
     for (const auto& [name, bytes] : package.files())
@@ -134,13 +142,29 @@ Backup readAll(const cases::LargePackage& package, const Manifest& manifest, con
         backup.bytes += package.files().at("files/" + one);
         ++backup.files;
     }
+    for (const auto& [name, hash] : manifest.keys) {
+        read("keys/" + name, hash, folder.value_or(fs::path()) / name);
+        ++backup.keys;
+    }
     return backup;
+}
+
+/// Into its place; what was there and is another one stays beside it.
+void placeKey(const fs::path& from, const fs::path& to) {
+    if (core::isThere(to)) {
+        if (core::readFile(to, kMostKey) == core::readFile(from, kMostKey)) return;
+        fs::path aside;
+        for (int i = 1; aside.empty() || core::isThere(aside); ++i)
+            aside = fmt::format("{}.before-restore-{}", to.string(), i);
+        fs::rename(to, aside);
+    }
+    core::writeFile(to, core::readFile(from, kMostKey), {.ownerOnly = true});
 }
 
 }  // namespace
 
 Backup backUp(const fs::path& data, const std::string& address, const fs::path& file, Milliseconds now,
-              const std::string& program, const core::Progress& progress) {
+              const std::string& program, bool keys, const core::Progress& progress) {
     core::prepareOutputFolder(data, true);
     const Workplace place(data);
     const BooksCopy copy = copyBooks(data, address, place.path());
@@ -160,7 +184,16 @@ Backup backUp(const fs::path& data, const std::string& address, const fs::path& 
         backup.bytes += fs::file_size(place.path() / "files" / hash);
         ++backup.files;
     }
-    cases::writeLargePackage(file, {{kManifest, bytesOf(toml)}}, parts, progress);
+    cases::PackageFiles small;
+    for (const char* name : kServerKeys) {
+        if (!keys || !core::isThere(data / name)) continue;
+        const std::vector<std::byte> key = core::readFile(data / name, kMostKey);
+        toml += fmt::format("\n[[key]]\nname = \"{}\"\nsha256 = \"{}\"\n", name, sha256Of(data / name));
+        small[fmt::format("keys/{}", name)] = key;
+        ++backup.keys;
+    }
+    small[kManifest] = bytesOf(toml);
+    cases::writeLargePackage(file, small, parts, progress);
     return backup;
 }
 
@@ -177,6 +210,8 @@ Backup restore(const fs::path& file, const fs::path& data, const std::string& ad
     core::prepareOutputFolder(place.path() / "files", true);
     const Backup backup = readAll(package, manifest, file, place.path(), progress);
     loadBooks(manifest.copy, place.path(), data, address);
+    for (const auto& [name, hash] : manifest.keys)
+        placeKey(place.path() / name, data / name);
     return backup;
 }
 

@@ -24,12 +24,12 @@ constexpr const char *kJson = "application/json", *kCookie = "handpiece", *kPoli
 
 int statusOf(const core::Error& error) {
     static const std::map<std::string, int, std::less<>> statuses{
-        {"message-damaged", 400},  {"books-invalid", 400},   {"not-enrolled", 401},    {"code-unknown", 403},
-        {"live-private", 403},     {"books-unknown", 404},   {"books-duplicate", 409}, {"books-changed", 409},
-        {"upload-offset", 409},    {"upload-mismatch", 422}, {"no-space", 507},        {"store-locked", 503},
-        {"store-gone", 503},       {"store-refused", 503},   {"protocol-other", 426},  {"exam-damaged", 400},
-        {"exam-newer", 400},       {"exam-other-key", 403},  {"exam-changed", 403},    {"exam-chain", 409},
-        {"account-suspended", 403}};
+        {"message-damaged", 400}, {"books-invalid", 400},   {"not-enrolled", 401},     {"code-unknown", 403},
+        {"live-private", 403},    {"books-unknown", 404},   {"books-duplicate", 409},  {"books-changed", 409},
+        {"upload-offset", 409},   {"upload-mismatch", 422}, {"no-space", 507},         {"store-locked", 503},
+        {"store-gone", 503},      {"store-refused", 503},   {"store-full", 503},       {"store-busy", 503},
+        {"protocol-other", 426},  {"exam-damaged", 400},    {"exam-newer", 400},       {"exam-other-key", 403},
+        {"exam-changed", 403},    {"exam-chain", 409},      {"account-suspended", 403}};
     const auto found = statuses.find(error.id());
     return found != statuses.end() ? found->second : 500;
 }
@@ -57,8 +57,16 @@ void answer(Response& response, const std::string& json, int status) {
 void answer(Response& response, const core::Error& error) {
     // Where it went wrong here is not a station's to know, unless it is its own.
     const int status = statusOf(error);
-    if (status < 500 || status == 503 || status == 507) return answer(response, school_wire::toJson(error), status);
+    if (status < 500 || status == 507) return answer(response, school_wire::toJson(error), status);
     std::fprintf(stderr, "handpiece-school: %s\n", error.what());
+    if (status == 503) {
+        response.set_header("Retry-After", "5");
+        return answer(response,
+                      school_wire::toJson(core::Error("the server's database does not answer, or has too much to do",
+                                                      "", "try again in a few seconds")
+                                              .as(error.id())),
+                      status);
+    }
     answer(
         response,
         school_wire::toJson(core::Error("something went wrong there", "", "tell who looks after it; it is in its log")

@@ -20,16 +20,19 @@ inline core::Error silent(const std::string& server, const std::string& why) {
         .as("server-silent", {server, why});
 }
 
+inline constexpr std::chrono::seconds kLinePatience{20};
+
 /// One connection, for one thread. What it throws is core::Error: "server-silent", or what the server says.
 class Line {
   public:
-    Line(const std::string& server, std::string key, std::chrono::seconds patience = std::chrono::seconds(20))
+    Line(const std::string& server, std::string key, std::chrono::seconds patience = kLinePatience,
+         int protocol = school_wire::kProtocol)
         : server_(server), http_(checked(server)) {
         http_.set_connection_timeout(patience);
         http_.set_read_timeout(patience);
         http_.set_write_timeout(patience);
         http_.set_keep_alive(true);
-        httplib::Headers headers{{"Handpiece-Protocol", std::to_string(school_wire::kProtocol)}};
+        httplib::Headers headers{{"Handpiece-Protocol", std::to_string(protocol)}};
         if (!key.empty()) headers.emplace("Authorization", "Bearer " + key);
         http_.set_default_headers(headers);
     }

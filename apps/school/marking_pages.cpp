@@ -459,6 +459,7 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
     for (const char* word : {"school-teaching.difference", "school-teaching.final", "school-teaching.released"})
         header.push_back(words()(word));
     std::vector<std::vector<Cell>> rows;
+    std::vector<report::FormButton> single;
     std::size_t settledCount = 0, open = 0;
     for (const auto& [id, marks] : byAttempt) {
         const Settled settled = settle(marks, allowed);
@@ -480,6 +481,10 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
                                              verdictText(settled.final->verdict))
                                : "\u2013"});
         row.push_back({released.contains(id) ? words()("school-teaching.released") : ""});
+        if (released.contains(id))
+            single.push_back({words()("school-teaching.take-back-one", id.substr(0, 6)), "take-back-one", id, true});
+        else if (settled.final)
+            single.push_back({words()("school-teaching.release-one", id.substr(0, 6)), "release-one", id});
         settledCount += settled.final ? 1 : 0;
         open += settled.needsAdjudication ? 1 : 0;
         rows.push_back(std::move(row));
@@ -497,6 +502,7 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
                {token},
                {{words()("school-teaching.release"), "do", "release"},
                 {words()("school-teaching.take-back"), "do", "take-back", true}}});
+    if (!single.empty()) page.form({at(assignment, "/marks"), {token}, std::move(single)});
     page.heading(words()("school-teaching.difference-heading"));
     report::FormField difference{"percent", words()("school-teaching.difference-label"), "text",
                                  fmt::format("{:g}", allowed)};
@@ -510,7 +516,10 @@ Page changeMarks(const Visit& v, const std::string& assignment, const Fields& fi
     const auto of = assignedFor(v, assignment, Action::mark);
     if (!of) return notYours();
     Teaching teaching(v.books);
-    const std::string what = fieldOf(fields, "do");
+    const std::string one = fieldOf(fields, "release-one"), back = fieldOf(fields, "take-back-one"), only = one + back,
+                      what = !one.empty()    ? "release"
+                             : !back.empty() ? "take-back"
+                                             : fieldOf(fields, "do");
     if (what == "difference") {
         const std::optional<double> percent = numberIn(fieldOf(fields, "percent"));
         if (!percent || *percent < 0.0 || *percent > 100.0)
@@ -530,6 +539,10 @@ Page changeMarks(const Visit& v, const std::string& assignment, const Fields& fi
         attempts.assign(released.begin(), released.end());
     } else {
         return refused(words()("school.not-there"), 400);
+    }
+    if (!only.empty()) {
+        std::erase_if(attempts, [&only](const std::string& id) { return id != only; });
+        if (attempts.empty()) return marksOf(v, assignment, {words()("school-teaching.not-to-release"), true});
     }
     teaching.release(attempts, what == "release", actOf(v));
     return marksOf(v, assignment,

@@ -7,6 +7,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/people/secret.h"
 #include "handpiece/school/store/books_accounts.h"
+#include "handpiece/school/store/lti_books.h"
 #include "school/answers.h"
 #include "school/routes.h"
 
@@ -16,20 +17,26 @@ namespace {
 using httplib::Request;
 using httplib::Response;
 
+std::string logInPage(Service& of, const std::string& login = {}, const std::string& wrong = {}) {
+    const bool hasPlatform = !of.settings.address.empty() && !school::LtiBooks(*of.books.take()).platforms().empty();
+    return report::loginPage(login, wrong, {!of.settings.signOn.proxies.empty(), hasPlatform});
+}
+
 Page logIn(Service& of, const Request& request) {
     const std::string login = request.get_param_value("login"), password = request.get_param_value("password");
     const school::Milliseconds now = of.clock();
     const std::string from = "from " + request.remote_addr, as = "login " + login;
+    std::int64_t wait = 0;
     {
         const std::lock_guard lock(of.guessing);
-        if (const std::int64_t wait = std::max(of.throttle.waitMs(from, now), of.throttle.waitMs(as, now)); wait > 0)
-            return {429, report::loginPage(login, config::words()("school.wait", (wait + 999) / 1000)), {}, {}};
+        wait = std::max(of.throttle.waitMs(from, now), of.throttle.waitMs(as, now));
         // Counted before it is looked at: a hundred guesses at once are a hundred.
-        of.throttle.failed(from, now), of.throttle.failed(as, now);
+        if (wait <= 0) of.throttle.failed(from, now), of.throttle.failed(as, now);
     }
-    auto open = of.books.take();
+    if (wait > 0) return {429, logInPage(of, login, config::words()("school.wait", (wait + 999) / 1000)), {}, {}};
     constexpr std::size_t kMostPassword = 256;
-    const auto person = login.size() <= 200 ? open->personByLogin(login) : std::nullopt;
+    // Not held while the password is worked on, which takes long.
+    const auto person = login.size() <= 200 ? of.books.take()->personByLogin(login) : std::nullopt;
     bool isRight = false;
     if (password.size() <= kMostPassword) {
         if (person && !person->password.empty())
@@ -37,15 +44,15 @@ Page logIn(Service& of, const Request& request) {
         else
             school::spendPasswordTime(password);
     }
-    if (!isRight) return {401, report::loginPage(login, config::words()("school.wrong-login")), {}, {}};
+    if (!isRight) return {401, logInPage(of, login, config::words()("school.wrong-login")), {}, {}};
     {
         const std::lock_guard lock(of.guessing);
         of.throttle.succeeded(from), of.throttle.succeeded(as);
     }
-    if (school::BooksAccounts(*open).isSuspended(person->code))
-        return {403, report::loginPage(login, config::words()("school-office.is-suspended"))};
+    if (school::BooksAccounts(*of.books.take()).isSuspended(person->code))
+        return {403, logInPage(of, login, config::words()("school-office.is-suspended"))};
     const std::string token = school::newSecret();
-    open->addLogin(token, person->code, now + kLoginMs, {person->code, now});
+    of.books.take()->addLogin(token, person->code, now + kLoginMs, {person->code, now});
     return {303, {}, "/classes", token};
 }
 
@@ -54,7 +61,7 @@ Page logIn(Service& of, const Request& request) {
 std::vector<Entry> pageRoutes(Service* of) {
     return {
         {"GET", "/login", Handler([of](const Request&, Response& response) {
-             answer(response, Page{200, report::loginPage({}, {}), {}, {}}, of->isSecure());
+             answer(response, Page{200, logInPage(*of), {}, {}}, of->isSecure());
          })},
         {"POST", "/login", Handler([of](const Request& request, Response& response) {
              answer(response, logIn(*of, request), of->isSecure());

@@ -20,7 +20,7 @@ using school::Action;
 using school::Relation;
 
 Page refused(const std::string& what, int status) {
-    return {status, report::refusalPage(what, status == 403 ? "" : words()("school.again"))};
+    return {status, report::refusalPage(what, status == 403 || status == 503 ? "" : words()("school.again"))};
 }
 
 Page classesOf(const Visit& v) {

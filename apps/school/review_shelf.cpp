@@ -113,7 +113,14 @@ std::string ReviewShelf::made(const std::string& id, const core::Progress& progr
     return report::reviewPage(chain, {id, attempt->attempt.exercise, attempt->attempt.finished}, against, progress);
 }
 
+void ReviewShelf::removeGone(const school::Books& books) {
+    std::error_code ec;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ec))
+        if (!books.attempt(entry.path().filename().string().substr(0, 32))) fs::remove(entry.path(), ec);
+}
+
 void ReviewShelf::sweep(const fs::path& keep) {
+    removeGone(*books_.take());
     struct Kept {
         fs::file_time_type at;
         fs::path path;
@@ -121,15 +128,9 @@ void ReviewShelf::sweep(const fs::path& keep) {
     };
     std::vector<Kept> all;
     std::uintmax_t bytes = 0;
-    const BooksPool::Lent books = books_.take();
+    // What was of another score goes as what nobody asks for.
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
         std::error_code ec;
-        const std::string name = entry.path().filename().string();
-        // Attempts may be gone from the books; what was of another score goes as what nobody asks for.
-        if (!books->attempt(name.substr(0, 32))) {
-            fs::remove(entry.path(), ec);
-            continue;
-        }
         const std::uintmax_t size = entry.file_size(ec);
         if (ec) continue;
         all.push_back({entry.last_write_time(ec), entry.path(), size});

@@ -39,6 +39,9 @@ class ReviewShelf {
     /// The page, or how far it is. `attempt` has all its files.
     [[nodiscard]] Answer ask(const school::PushedAttempt& attempt, const std::vector<school::Score>& scores);
 
+    /// Pages of attempts that the books no longer have go.
+    void removeGone(const school::Books& books);
+
   private:
     void loop();
     [[nodiscard]] std::string made(const std::string& attempt, const core::Progress& progress);

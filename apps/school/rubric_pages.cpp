@@ -380,6 +380,26 @@ Page saveRubric(const Visit& v, const Fields& fields) {
     }
 }
 
+namespace {
+/// Whether there is still some of it to do.
+bool addProgress(HtmlReport& page, const school::Progress& far) {
+    const std::int64_t all = far.waiting + far.taken + far.done + far.failed;
+    page.progress(static_cast<double>(far.done + far.failed), static_cast<double>(std::max<std::int64_t>(all, 1)),
+                  words()("school-teaching.far", far.done, all, far.failed));
+    return far.waiting + far.taken > 0;
+}
+}  // namespace
+
+Page rescoreProgressOf(const Visit& v, const std::string& assignment) {
+    if (!assignedFor(v, assignment, Action::rescore)) return notYours();
+    HtmlReport page(words()("school-teaching.rescore"));
+    bool isOpen = false;
+    for (const school::Campaign& one : Teaching(v.books).campaigns(assignment))
+        isOpen = addProgress(page, v.books.progress(one.id)) || isOpen;
+    if (isOpen) page.keepUp("?progress");
+    return {200, page.text()};
+}
+
 Page rescoreOf(const Visit& v, const std::string& assignment, const Told& told) {
     const auto of = assignedFor(v, assignment, Action::rescore);
     if (!of) return notYours();
@@ -415,12 +435,8 @@ Page rescoreOf(const Visit& v, const std::string& assignment, const Told& told) 
     bool isOpen = false;
     for (const school::Campaign& one : campaigns) {
         take(one.id);
-        const school::Progress far = v.books.progress(one.id);
-        const std::int64_t all = far.waiting + far.taken + far.done + far.failed;
-        isOpen = isOpen || far.waiting + far.taken > 0;
         page.heading(words()("school-teaching.campaign", nameOf(one.rubric), report::momentOf(one.made)));
-        page.progress(static_cast<double>(far.done + far.failed), static_cast<double>(std::max<std::int64_t>(all, 1)),
-                      words()("school-teaching.far", far.done, all, far.failed));
+        isOpen = addProgress(page, v.books.progress(one.id)) || isOpen;
         const bool counts = counting == one.id;
         page.paragraph(words()(counts ? "school-teaching.counts" : "school-teaching.counts-not"),
                        counts ? Tone::good : Tone::note);
@@ -458,9 +474,15 @@ Page rescoreOf(const Visit& v, const std::string& assignment, const Told& told) 
         page.form({"/assignments/" + assignment + "/rescore",
                    {token, {"campaign", {}, "hidden", school::kArrival}},
                    {{words()("school-teaching.let-arrival-count"), "do", "count"}}});
-    if (isOpen) page.link("/assignments/" + assignment + "/rescore", words()("school-teaching.look-again"));
+    if (isOpen) {
+        page.link("/assignments/" + assignment + "/rescore", words()("school-teaching.look-again"));
+        page.keepUp("?progress");
+        page.script("/live.js", "{}");
+    }
     noteLook(v, "scores seen", "", assignment);
-    return {told.isWrong ? 422 : 200, page.text()};
+    Page shown{told.isWrong ? 422 : 200, page.text()};
+    shown.runsScript = isOpen;
+    return shown;
 }
 
 Page changeScores(const Visit& v, const std::string& assignment, const Fields& fields) {

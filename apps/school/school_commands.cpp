@@ -166,6 +166,13 @@ void push(const StationOptions& o) {
     bar.finish();
     fmt::print("{} attempts, {} judgements, {} files ({:.1f} MB)\n", pushed.attempts, pushed.judgements, pushed.files,
                1e-6 * static_cast<double>(pushed.bytes));
+    if (pushed.clockAhead != 0)
+        std::fprintf(stderr,
+                     "this computer's clock is %s the server's: set it right. Work is dated by it, and counts for what "
+                     "the class has to do by the server's\n",
+                     fmt::format("{:.1f} h {}", std::abs(1e-3 * static_cast<double>(pushed.clockAhead)) / 3600.0,
+                                 pushed.clockAhead > 0 ? "ahead of" : "behind")
+                         .c_str());
     for (const std::string& one : pushed.refused)
         std::fprintf(stderr, "refused: %s\n", one.c_str());
 }

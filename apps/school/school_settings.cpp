@@ -17,18 +17,27 @@
 namespace handpiece::school_cli {
 namespace {
 
-constexpr std::size_t kMostWorkers = 64;
-
 void fill(std::string& value, const std::string& from) {
     if (value.empty()) value = from;
 }
 
-std::size_t workersIn(const std::string& text, const std::string& where) {
+/// A number of something, and how many of it there may be.
+struct Count {
+    const char* key;
+    const char* variable;
+    std::size_t least, most, asBuilt;
+    std::optional<std::size_t> SchoolSettings::*value;
+};
+constexpr Count kCounts[] = {
+    {"workers", "HANDPIECE_SCHOOL_WORKERS", 0, kMostWorkers, 1, &SchoolSettings::workers},
+    {"connections", "HANDPIECE_SCHOOL_CONNECTIONS", 1, kMostConnections, 60, &SchoolSettings::connections}};
+
+std::size_t countIn(const std::string& text, const Count& of) {
     std::size_t count = 0;
     const auto [end, ec] = std::from_chars(text.data(), text.data() + text.size(), count);
-    if (text.empty() || ec != std::errc() || end != text.data() + text.size() || count > kMostWorkers)
-        throw core::Error(fmt::format("\"{}\" is no number of workers", text), where,
-                          fmt::format("write 0 to {}", kMostWorkers));
+    if (text.empty() || ec != std::errc() || end != text.data() + text.size() || count < of.least || count > of.most)
+        throw core::Error(fmt::format("\"{}\" is no number of {}", text, of.key), of.variable,
+                          fmt::format("write {} to {}", of.least, of.most));
     return count;
 }
 
@@ -63,14 +72,15 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.signOnSecret, variable("HANDPIECE_SCHOOL_SIGN_ON_SECRET"));
     fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
     if (s.signOnProxies.empty()) s.signOnProxies = partsOf(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXIES"));
-    if (const std::string workers = variable("HANDPIECE_SCHOOL_WORKERS"); !s.workers && !workers.empty())
-        s.workers = workersIn(workers, "HANDPIECE_SCHOOL_WORKERS");
+    for (const Count& of : kCounts)
+        if (const std::string text = variable(of.variable); !(s.*of.value) && !text.empty())
+            s.*of.value = countIn(text, of);
     // The system's file is for those who may read it: a database's password may stand in it.
     if (s.file.empty() && !systemFile.empty() && access(systemFile.c_str(), R_OK) == 0) s.file = systemFile;
     if (!s.file.empty()) {
         const config::Table file = config::Table::read(s.file);
-        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "address", "sign_on_proxies",
-                        "sign_on_secret", "sign_on_header"});
+        file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "connections", "address",
+                        "sign_on_proxies", "sign_on_secret", "sign_on_header"});
         fill(s.data, file.text("data").value_or(""));
         fill(s.database, file.text("database").value_or(""));
         fill(s.listen, file.text("listen").value_or(""));
@@ -80,17 +90,19 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
         fill(s.signOnSecret, file.text("sign_on_secret").value_or(""));
         fill(s.signOnHeader, file.text("sign_on_header").value_or(""));
         if (s.signOnProxies.empty()) s.signOnProxies = file.texts("sign_on_proxies");
-        if (const auto workers = file.integer("workers")) {
-            if (*workers < 0 || *workers > static_cast<std::int64_t>(kMostWorkers))
-                file.fail(fmt::format("{} is no number of workers", *workers),
-                          fmt::format("write 0 to {}", kMostWorkers), "workers");
-            if (!s.workers) s.workers = static_cast<std::size_t>(*workers);
-        }
+        for (const Count& of : kCounts)
+            if (const auto count = file.integer(of.key)) {
+                if (*count < static_cast<std::int64_t>(of.least) || *count > static_cast<std::int64_t>(of.most))
+                    file.fail(fmt::format("{} is no number of {}", *count, of.key),
+                              fmt::format("write {} to {}", of.least, of.most), of.key);
+                if (!(s.*of.value)) s.*of.value = static_cast<std::size_t>(*count);
+            }
     }
     fill(s.data, "school");
     fill(s.listen, "127.0.0.1:8620");
     fill(s.signOnHeader, "X-Handpiece-User");
-    if (!s.workers) s.workers = 1;
+    for (const Count& of : kCounts)
+        if (!(s.*of.value)) s.*of.value = of.asBuilt;
     return s;
 }
 

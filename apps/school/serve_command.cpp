@@ -30,7 +30,7 @@ namespace {
 
 struct ServeOptions {
     SchoolSettings given;
-    std::size_t workers = 0;
+    std::size_t workers = 0, connections = 0;
     bool worker = false;
 };
 
@@ -98,7 +98,7 @@ void serve(const ServeOptions& asked) {
     if (o.signOnProxies.empty() != settings.signOn.secret.empty())
         throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
                           "give both --sign-on-proxy and --sign-on-secret, or neither");
-    settings.workers = *o.workers;
+    settings.connections = *o.connections;
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')
@@ -138,7 +138,9 @@ void addServeCommand(cli::Command& app) {
     command.option("--certificate", o.given.certificate, "TLS of its own: certificate (PEM), with --key");
     command.option("--key", o.given.key, "its key (PEM)");
     command.option("--workers", o.workers, "that cut sessions again in this program; 0: others do (1)")
-        .check(cli::range(std::size_t{0}, std::size_t{64}));
+        .check(cli::range(std::size_t{0}, kMostWorkers));
+    command.option("--connections", o.connections, "to the database at once, at most; who comes beyond waits (60)")
+        .check(cli::range(std::size_t{1}, kMostConnections));
     command.option("--address", o.given.address, "as browsers know it, https://school.example: for log-ins by LTI");
     command
         .option("--sign-on-proxy", o.given.signOnProxies,
@@ -150,6 +152,7 @@ void addServeCommand(cli::Command& app) {
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
     command.callback([options, command] {
         if (command.isGiven("--workers")) options->given.workers = options->workers;
+        if (command.isGiven("--connections")) options->given.connections = options->connections;
         serve(*options);
     });
 }

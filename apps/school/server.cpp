@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cerrno>
+#include <charconv>
 #include <chrono>
 #include <cstring>
 #include <string_view>
@@ -67,7 +68,7 @@ struct Server::State : Service {
                               "another program is there, or the address is none of this machine's: give another one")
                 .as("port-taken", {settings.host, std::to_string(settings.port)});
         letManyWait();
-        guard = std::make_unique<SlowGuard>(port, settings.slow);
+        guard = std::make_unique<SlowGuard>(listening, settings.slow);
         for (std::size_t i = 0; i < settings.workers; ++i)
             workers.push_back(std::make_unique<Worker>(WorkerSettings{settings.data, settings.database}, clock));
     }
@@ -108,7 +109,7 @@ struct Server::State : Service {
         http->set_tcp_nodelay(true);
         http->set_default_headers(
             {{"X-Content-Type-Options", "nosniff"}, {"Cache-Control", "no-store"}, {"Referrer-Policy", "no-referrer"}});
-        http->set_exception_handler([this](const Request&, Response& response, std::exception_ptr thrown) {
+        http->set_exception_handler([this](const Request& request, Response& response, std::exception_ptr thrown) {
             ++failed;
             try {
                 std::rethrow_exception(thrown);
@@ -117,6 +118,10 @@ struct Server::State : Service {
             } catch (...) {
                 answer(response, core::Error("something that is no error was thrown"));
             }
+            if (response.status != 503 || request.get_header_value("Accept").find("text/html") == std::string::npos)
+                return;
+            const config::LanguageHere here(languageOf(request));
+            answer(response, refused(config::words()("school.busy"), 503), isSecure());
         });
         http->set_error_handler([](const Request&, Response& response) {
             if (!response.body.empty()) return;
@@ -134,9 +139,7 @@ struct Server::State : Service {
         const auto handler = [this, entry](const Request& request, Response& response) {
             ++asked;
             const SlowGuard::Working working(*guard, request.remote_port);
-            // Each person in the language that their browser asks for; the server's own where that is none of ours.
-            const std::string language = config::languageAsked(request.get_header_value("Accept-Language"));
-            const config::LanguageHere here(language.empty() ? config::words().language() : language);
+            const config::LanguageHere here(languageOf(request));
             if (const auto* anyones = std::get_if<Handler>(&entry.answer)) return (*anyones)(request, response);
             if (const auto* stations = std::get_if<StationHandler>(&entry.answer))
                 return (*stations)(request, response, stationOf(request));
@@ -151,6 +154,12 @@ struct Server::State : Service {
         if (method == "GET") http->Get(entry.pattern, handler);
         if (method == "POST") http->Post(entry.pattern, withBody);
         if (method == "PUT") http->Put(entry.pattern, withBody);
+    }
+
+    /// Each person's browser asks for one; the server's own where that is none of ours.
+    static std::string languageOf(const Request& request) {
+        const std::string asked = config::languageAsked(request.get_header_value("Accept-Language"));
+        return asked.empty() ? config::words().language() : asked;
     }
 
     /// Much is taken of who is logged in alone.
@@ -206,13 +215,27 @@ struct Server::State : Service {
         answer(response, std::get<Shown>(entry.answer)(request, visit), isSecure());
     }
 
+    /// What the station speaks, the server has to know.
+    void requireSpoken(const Request& request) const {
+        const std::string said = request.get_header_value("Handpiece-Protocol");
+        int spoken = 0;
+        const auto [end, ec] = std::from_chars(said.data(), said.data() + said.size(), spoken);
+        const bool isNumber = !said.empty() && ec == std::errc() && end == said.data() + said.size();
+        if (isNumber && spoken >= settings.oldestProtocol && spoken <= settings.newestProtocol) return;
+        const bool isNewer = isNumber && spoken > settings.newestProtocol;
+        throw core::Error(fmt::format("the station speaks version {} of the messages, and the server knows {}",
+                                      isNumber ? said : "none",
+                                      settings.oldestProtocol == settings.newestProtocol
+                                          ? std::to_string(settings.newestProtocol)
+                                          : fmt::format("{} to {}", settings.oldestProtocol, settings.newestProtocol)),
+                          "",
+                          isNewer ? "bring the server up to date; nothing is lost until then"
+                                  : "bring the station up to date; nothing is lost until then")
+            .as("protocol-other", {said, std::to_string(settings.newestProtocol)});
+    }
+
     school::Station stationOf(const Request& request) {
-        if (const std::string said = request.get_header_value("Handpiece-Protocol");
-            said != std::to_string(school_wire::kProtocol))
-            throw core::Error(fmt::format("the station speaks version {} of what the server speaks in version {}",
-                                          said.empty() ? "none" : said, school_wire::kProtocol),
-                              "", "bring the older of the two up to date; nothing is lost until then")
-                .as("protocol-other", {said, std::to_string(school_wire::kProtocol)});
+        requireSpoken(request);
         constexpr std::string_view kBearer = "Bearer ";
         const std::string said = request.get_header_value("Authorization");
         if (said.starts_with(kBearer) && said.size() < 200)

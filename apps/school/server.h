@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "handpiece/school/store/books.h"
+#include "school/wire.h"
 
 namespace handpiece::school_server {
 
@@ -25,13 +26,16 @@ struct Settings {
     std::filesystem::path data;  ///< its folder
     std::string database{};      ///< empty: SQLite in it; else postgresql://...
     std::string host = "127.0.0.1";
-    int port = 8620;                         ///< 0: any that is free
-    std::string certificate{}, key{};        ///< files (PEM) for TLS of its own; both or neither
-    std::size_t threads = 400;               ///< at most; each serves one connection
+    int port = 8620;                   ///< 0: any that is free
+    std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
+    std::size_t threads = 400;         ///< at most; each serves one connection
+    std::size_t connections = 60;      ///< to the database at once, at most; PostgreSQL has 100 for all its clients
     std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off
     std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
     std::string address{};  ///< as browsers know it, without a slash at its end; empty: no log-in by LTI
     SignOn signOn{};
+    /// Versions of the messages that it takes from stations.
+    int oldestProtocol = school_wire::kOldestProtocol, newestProtocol = school_wire::kProtocol;
     bool keepsHouse = true;  ///< what is over its time goes, and grades go out
 };
 /// Since 1970, UTC.

@@ -19,7 +19,10 @@ namespace handpiece::school_server {
 
 struct Service {
     Service(const Settings& s, Clock c)
-        : settings(s), clock(std::move(c)), books({s.data, s.database}), reviews(s.data / "reviews", books, tasks) {}
+        : settings(s),
+          clock(std::move(c)),
+          books({s.data, s.database, s.connections}),
+          reviews(s.data / "reviews", books, tasks) {}
 
     [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
 

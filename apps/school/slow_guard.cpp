@@ -1,28 +1,60 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "school/slow_guard.h"
 
-#include <arpa/inet.h>
+#include <fcntl.h>
 #include <linux/tcp.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <charconv>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace handpiece::school_server {
 namespace {
 
-int portOf(const sockaddr_storage& address) {
-    if (address.ss_family == AF_INET) return ntohs(reinterpret_cast<const sockaddr_in&>(address).sin_port);
-    if (address.ss_family == AF_INET6) return ntohs(reinterpret_cast<const sockaddr_in6&>(address).sin6_port);
-    return -1;
+struct Address {
+    int family = AF_UNSPEC, port = -1;
+    std::string host{};  ///< its bytes; empty: any of this machine
+};
+
+using Name = int (*)(int, sockaddr*, socklen_t*);
+/// None where it is no socket of this kind, or not connected.
+std::optional<Address> addressBy(Name name, int fd) {
+    sockaddr_storage got{};
+    socklen_t size = sizeof got;
+    if (name(fd, reinterpret_cast<sockaddr*>(&got), &size) != 0) return {};
+    const auto of = [](int family, int port, const auto& host) {
+        const std::string bytes(reinterpret_cast<const char*>(&host), sizeof host);
+        return Address{family, ntohs(static_cast<std::uint16_t>(port)),
+                       bytes.find_first_not_of('\0') == bytes.npos ? std::string() : bytes};
+    };
+    if (got.ss_family == AF_INET) {
+        const auto& four = reinterpret_cast<const sockaddr_in&>(got);
+        return of(AF_INET, four.sin_port, four.sin_addr);
+    }
+    if (got.ss_family != AF_INET6) return {};
+    const auto& six = reinterpret_cast<const sockaddr_in6&>(got);
+    return of(AF_INET6, six.sin6_port, six.sin6_addr);
 }
+
+/// Of this process, one more name: what it means stays the same until it is closed, whoever closes the other.
+struct Held {
+    explicit Held(int of) : fd(fcntl(of, F_DUPFD_CLOEXEC, 0)) {}
+    ~Held() {
+        if (fd >= 0) close(fd);
+    }
+    Held(const Held&) = delete;
+    Held& operator=(const Held&) = delete;
+    const int fd;
+};
 
 }  // namespace
 
-SlowGuard::SlowGuard(int port, std::chrono::milliseconds window) : port_(port), window_(window) {
+SlowGuard::SlowGuard(int listening, std::chrono::milliseconds window) : listening_(listening), window_(window) {
     thread_ = std::thread([this] { watch(); });
 }
 SlowGuard::~SlowGuard() {
@@ -51,15 +83,20 @@ void SlowGuard::watch() {
 
 void SlowGuard::look(std::chrono::steady_clock::time_point now) {
     std::map<std::uint64_t, Watched> there;
+    const std::optional<Address> here = addressBy(getsockname, listening_);
+    if (!here) return;
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator("/proc/self/fd", none)) {
-        int fd = -1;
+        int number = -1;
         const std::string name = entry.path().filename().string();
-        if (std::from_chars(name.data(), name.data() + name.size(), fd).ec != std::errc()) continue;
-        sockaddr_storage own{}, other{};
-        socklen_t ownSize = sizeof own, otherSize = sizeof other;
-        if (getsockname(fd, reinterpret_cast<sockaddr*>(&own), &ownSize) != 0 || portOf(own) != port_ ||
-            getpeername(fd, reinterpret_cast<sockaddr*>(&other), &otherSize) != 0)
+        if (std::from_chars(name.data(), name.data() + name.size(), number).ec != std::errc() ||
+            !std::filesystem::read_symlink(entry.path(), none).string().starts_with("socket:"))
+            continue;
+        const Held held(number);
+        const int fd = held.fd;
+        const std::optional<Address> own = addressBy(getsockname, fd), other = addressBy(getpeername, fd);
+        if (!own || !other || own->family != here->family || own->port != here->port ||
+            (!here->host.empty() && own->host != here->host))
             continue;
         tcp_info info{};
         socklen_t size = sizeof info;
@@ -68,7 +105,7 @@ void SlowGuard::look(std::chrono::steady_clock::time_point now) {
         const std::uint64_t bytes = info.tcpi_bytes_received + info.tcpi_bytes_acked;
         const auto known = watched_.find(file.st_ino);
         Watched one = known == watched_.end() ? Watched{now, bytes} : known->second;
-        if (working_.count(portOf(other)) > 0 || bytes >= one.bytes + kLeastBytes) one = {now, bytes};
+        if (working_.count(other->port) > 0 || bytes >= one.bytes + kLeastBytes) one = {now, bytes};
         if (now - one.since >= window_) {
             // Its thread hears the end and goes on to the next.
             shutdown(fd, SHUT_RDWR);

@@ -18,9 +18,9 @@ class SlowGuard {
   public:
     static constexpr std::uint64_t kLeastBytes = 2000;
 
-    /// @param port    of this server: connections to it are looked at
-    /// @param window  in which each has to send or take kLeastBytes, unless its request is being answered
-    SlowGuard(int port, std::chrono::milliseconds window);
+    /// @param listening  socket of this server: connections that came by it are looked at
+    /// @param window     in which each has to send or take kLeastBytes, unless its request is being answered
+    SlowGuard(int listening, std::chrono::milliseconds window);
     ~SlowGuard();
     SlowGuard(const SlowGuard&) = delete;
     SlowGuard& operator=(const SlowGuard&) = delete;
@@ -46,7 +46,7 @@ class SlowGuard {
     void watch();
     void look(std::chrono::steady_clock::time_point now);
 
-    const int port_;
+    const int listening_;
     const std::chrono::milliseconds window_;
     std::mutex mutex_;
     std::condition_variable wake_;

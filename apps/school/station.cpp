@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -27,18 +29,30 @@ bool isFinal(const core::Error& error) {
            std::find(std::begin(kFinal), std::end(kFinal), error.id()) != std::end(kFinal);
 }
 
+Line lineTo(const Enrolment& e) {
+    return {e.server, e.key, kLinePatience, e.protocol};
+}
+
+/// Against the server's; 0: they agree to a minute, or the server is an older one.
+school::Milliseconds clockAheadOf(const school_wire::Status& there) {
+    constexpr school::Milliseconds kAgrees = 60'000;
+    const school::Milliseconds now = std::chrono::duration_cast<std::chrono::milliseconds>(
+                                         std::chrono::system_clock::now().time_since_epoch())
+                                         .count(),
+                               ahead = now - there.now;
+    return there.now == 0 || std::abs(ahead) < kAgrees ? 0 : ahead;
+}
+
 class Pusher {
   public:
     Pusher(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file)
-        : store_(store),
-          sessions_(sessions),
-          enrolment_(enrolment),
-          file_(file),
-          line_(enrolment.server, enrolment.key) {}
+        : store_(store), sessions_(sessions), enrolment_(enrolment), file_(file), line_(lineTo(enrolment)) {}
 
     Pushed run(const core::Progress& progress) {
         // Books that were restored do not have what came after the backup: all of it once more, which is no error.
         const school_wire::Status there = school_wire::statusFrom(line_.get("/api/v1/status"));
+        pushed_.clockAhead = clockAheadOf(there);
+        serversNow_ = there.now;
         if (there.books != enrolment_.books) {
             if (!enrolment_.books.empty()) enrolment_.sent = 0;
             enrolment_.books = there.books;
@@ -76,9 +90,15 @@ class Pusher {
     /// The one that the school gave to do with this very exercise at that time; empty: practice of one's own.
     std::string assignmentOf(const school::Attempt& attempt) {
         if (!tasks_) tasks_ = school_wire::tasksFrom(line_.get("/api/v1/tasks/" + enrolment_.person));
-        for (const school_wire::Task& t : *tasks_)
-            if (t.exerciseHash == attempt.exerciseHash && attempt.finished >= t.opens && attempt.began <= t.closes)
-                return t.assignment;
+        // As this computer's clock said. Then, where that is wrong, as the server's would have: what is dated in the
+        // server's future was finished by now at the latest.
+        const school::Milliseconds inFuture =
+            serversNow_ > 0 ? std::max<school::Milliseconds>(0, attempt.finished - serversNow_) : 0;
+        for (const school::Milliseconds ahead : {school::Milliseconds{0}, pushed_.clockAhead, inFuture})
+            for (const school_wire::Task& t : *tasks_)
+                if (t.exerciseHash == attempt.exerciseHash && attempt.finished - ahead >= t.opens &&
+                    attempt.began - ahead <= t.closes)
+                    return t.assignment;
         return {};
     }
     void sendAttempt(const school::Attempt& attempt) {
@@ -108,6 +128,7 @@ class Pusher {
     const fs::path& file_;
     Line line_;
     std::optional<std::vector<school_wire::Task>> tasks_;
+    school::Milliseconds serversNow_ = 0;
     Pushed pushed_;
 };
 
@@ -160,11 +181,16 @@ std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment) {
 }
 
 std::vector<school_wire::Task> tasksOf(const Enrolment& enrolment) {
-    return school_wire::tasksFrom(Line(enrolment.server, enrolment.key).get("/api/v1/tasks/" + enrolment.person));
+    Line line = lineTo(enrolment);
+    const school::Milliseconds ahead = clockAheadOf(school_wire::statusFrom(line.get("/api/v1/status")));
+    std::vector<school_wire::Task> tasks = school_wire::tasksFrom(line.get("/api/v1/tasks/" + enrolment.person));
+    for (school_wire::Task& t : tasks)
+        t.opens += ahead, t.closes += ahead;
+    return tasks;
 }
 
 school_wire::Status status(const Enrolment& enrolment) {
-    return school_wire::statusFrom(Line(enrolment.server, enrolment.key).get("/api/v1/status"));
+    return school_wire::statusFrom(lineTo(enrolment).get("/api/v1/status"));
 }
 
 }  // namespace handpiece::school_station

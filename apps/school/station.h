@@ -18,9 +18,10 @@ namespace handpiece::school_station {
 struct Enrolment {
     std::string server;  ///< http(s)://host[:port]
     std::string station, key;
-    std::string person;     ///< whose results these are: the school's code
-    std::int64_t sent = 0;  ///< up to where in the outbox the server has it
-    std::string books{};    ///< incarnation of the server's books that have it
+    std::string person;                     ///< whose results these are: the school's code
+    std::int64_t sent = 0;                  ///< up to where in the outbox the server has it
+    std::string books{};                    ///< incarnation of the server's books that have it
+    int protocol = school_wire::kProtocol;  ///< that it speaks; not in the file
 };
 /// Throws core::Error "not-enrolled" where there is none, and for one that is damaged.
 [[nodiscard]] Enrolment readEnrolment(const std::filesystem::path& file);
@@ -33,7 +34,8 @@ void writeEnrolment(const Enrolment& enrolment, const std::filesystem::path& fil
 struct Pushed {
     std::size_t attempts = 0, judgements = 0, files = 0;
     std::uint64_t bytes = 0;
-    std::vector<std::string> refused;  ///< what the server will never take, a sentence each; the rest went on
+    std::vector<std::string> refused;     ///< what the server will never take, a sentence each; the rest went on
+    school::Milliseconds clockAhead = 0;  ///< of this computer against the server's; 0: they agree to a minute
 };
 /// All that is waiting, oldest first; `file` is written after each piece that the server has, so what was cut off goes
 /// on from there. Recordings lie in `sessions`; of an attempt whose recordings are gone the rest goes. Comments and
@@ -44,7 +46,7 @@ Pushed push(school::Store& store, const std::filesystem::path& sessions, Enrolme
 
 /// How much of the outbox the server has not heard of yet.
 [[nodiscard]] std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment);
-/// What its person has to do.
+/// What its person has to do; times by this computer's clock, which may be wrong.
 [[nodiscard]] std::vector<school_wire::Task> tasksOf(const Enrolment& enrolment);
 [[nodiscard]] school_wire::Status status(const Enrolment& enrolment);
 

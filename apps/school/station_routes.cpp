@@ -41,6 +41,7 @@ std::vector<Entry> stationRoutes(Service* of) {
                                         core::kEngineRevision,
                                         station.id,
                                         school::BooksAccounts(*open).incarnation(),
+                                        of->clock(),
                                         open->missingFiles(station.id)};
              if (status.missing.size() > 200) status.missing.resize(200);
              answer(response, toJson(status));

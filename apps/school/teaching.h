@@ -57,7 +57,7 @@ struct Told {
                             const Fields& fields, const TaskOf& taskOf, PictureShelf& pictures);
 /// What all markers said, what is to be adjudicated, what students see.
 [[nodiscard]] Page marksOf(const Visit& visit, const std::string& assignment, const Told& told = {});
-/// Field "do": "difference", "release", "take-back".
+/// Field "do": "difference", "release", "take-back"; or "release-one", "take-back-one": an attempt.
 [[nodiscard]] Page changeMarks(const Visit& visit, const std::string& assignment, const Fields& fields);
 [[nodiscard]] Page adjudicationOf(const Visit& visit, const std::string& attempt, const TaskOf& taskOf,
                                   PictureShelf& pictures);
@@ -98,6 +98,8 @@ struct Told {
 /// A version of its own.
 [[nodiscard]] Page saveRubric(const Visit& visit, const Fields& fields);
 [[nodiscard]] Page rescoreOf(const Visit& visit, const std::string& assignment, const Told& told = {});
+/// Nothing but how far each is.
+[[nodiscard]] Page rescoreProgressOf(const Visit& visit, const std::string& assignment);
 /// Field "do": "begin", "again", "count".
 [[nodiscard]] Page changeScores(const Visit& visit, const std::string& assignment, const Fields& fields);
 

@@ -61,8 +61,10 @@ std::vector<Entry> teachingRoutes(Service* of) {
          })},
         {"POST", "/rubrics",
          Shown([](const Request& request, const Visit& visit) { return saveRubric(visit, request.params); })},
-        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/rescore",
-         Shown([](const Request& request, const Visit& visit) { return rescoreOf(visit, request.matches[1]); })},
+        {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/rescore", Shown([](const Request& request, const Visit& visit) {
+             return request.has_param("progress") ? rescoreProgressOf(visit, request.matches[1])
+                                                  : rescoreOf(visit, request.matches[1]);
+         })},
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/rescore", Shown([](const Request& request, const Visit& visit) {
              return changeScores(visit, request.matches[1], request.params);
          })},

@@ -170,6 +170,7 @@ std::string toJson(const Status& s) {
                    {"engine", s.engine},
                    {"station", s.station},
                    {"books", s.books},
+                   {"now_ms", s.now},
                    {"missing", s.missing}});
 }
 Status statusFrom(std::string_view json) {
@@ -179,6 +180,7 @@ Status statusFrom(std::string_view json) {
             m.whole<std::int32_t>("engine"),
             m.text("station"),
             m.has("books") ? m.text("books") : std::string(),
+            m.has("now_ms") ? m.whole<std::int64_t>("now_ms") : 0,
             m.texts("missing")};
 }
 

@@ -15,8 +15,9 @@
 
 namespace handpiece::school_wire {
 
-/// Of the messages below. A server answers a station of another one with what to do.
-inline constexpr int kProtocol = 1;
+/// Of the messages below: what stations speak, and the oldest that a server still takes. It answers a station of
+/// another one with what to do.
+inline constexpr int kProtocol = 1, kOldestProtocol = 1;
 inline constexpr std::size_t kMostMessage = 4 << 20, kMostPiece = 4 << 20;
 
 /// What a station pushes; the server fills in station and time.
@@ -52,6 +53,7 @@ struct Status {
     std::int32_t engine = 0;
     std::string station;
     std::string books{};               ///< incarnation of its books; empty: of an older server
+    school::Milliseconds now = 0;      ///< by the server's clock; 0: of an older server
     std::vector<std::string> missing;  ///< SHA-256 of files of its attempts that have not come
 };
 [[nodiscard]] std::string toJson(const Status& status);

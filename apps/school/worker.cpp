@@ -58,14 +58,14 @@ void Worker::loop() {
 
 bool Worker::workOnce() {
     school::Books books(settings_.data, settings_.database);
-    std::optional<school::Job> job = books.takeJob(name_, clock_(), settings_.leaseMs);
+    std::optional<school::Job> job = books.takeJob(name_, books.sharedTime(clock_()), settings_.leaseMs);
     if (!job) return false;
     bool isLost = false;
     try {
         school::Score score = heard(books, *job, isLost);
         score.campaign = job->campaign;
         score.worker = name_;
-        score.made = clock_();
+        score.made = books.sharedTime(clock_());
         // Another was quicker: then it is there.
         (void)books.finish(*job, score);
     } catch (const core::Error& e) {
@@ -95,13 +95,13 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
     const core::Progress progress = [&](double) {
         if (ends_) return false;
         if (const school::Milliseconds now = clock_(); now - renewed > settings_.leaseMs / 4) {
-            if ((isLost = !books.renew(job, now, settings_.leaseMs))) return false;
+            if ((isLost = !books.renew(job, books.sharedTime(now), settings_.leaseMs))) return false;
             renewed = now;
         }
         return true;
     };
     school::Score score = proving::prove(*attempt, sessions, *task, rubric, progress);
-    checkExam(books, *attempt, sessions, clock_());
+    checkExam(books, *attempt, sessions, books.sharedTime(clock_()));
     return score;
 }
 

@@ -149,7 +149,38 @@ async function waitForIt(/** @type {HTMLElement} */ place) {
     }
 }
 
+/** What is not read out at every step. */
+const kStepMs = 5000;
+
+/**
+ * Moves a page's bars as the page at `from` has them, until they are full; then the rest is worth to be seen as well,
+ * unless somebody fills in a form just now.
+ * @param {string} from
+ */
+async function keepUp(from) {
+    for (;;) {
+        await new Promise((done) => setTimeout(done, kStepMs));
+        if (document.visibilityState !== "visible") continue;
+        try {
+            const answer = await fetch(from, { signal: patience(), redirect: "error" });
+            if (!answer.ok) return;
+            const page = new DOMParser().parseFromString(await answer.text(), "text/html");
+            const bars = page.querySelectorAll("[role=status]:has(> progress)");
+            document.querySelectorAll("[role=status]:has(> progress)").forEach((bar, i) => {
+                if (bars[i] && bar.innerHTML !== bars[i].innerHTML) bar.replaceChildren(...bars[i].childNodes);
+            });
+            if (page.getElementById("keep-up")) continue;
+            if (!document.activeElement?.closest("form")) location.reload();
+            return;
+        } catch {
+            // The server comes back, or the person goes.
+        }
+    }
+}
+
 const list = document.getElementById("live");
 if (list) new LivePage(list).run();
 const again = document.getElementById("again");
 if (again) waitForIt(again);
+const bars = document.getElementById("keep-up");
+if (bars) keepUp(bars.dataset.from ?? "");

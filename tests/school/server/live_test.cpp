@@ -7,6 +7,8 @@
 #include <random>
 
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/retention.h"
+#include "school/housekeeper.h"
 #include "school/jpeg.h"
 #include "school/live_board.h"
 #include "school/server/school_fixture.h"
@@ -463,7 +465,7 @@ TEST_F(LiveTest, AReviewIsMadeOnceForWhoMaySeeTheAttempt) {
     }
     (void)chair.push(enrolment);
     ASSERT_EQ(books().attempt(practice)->assignment, "as1");
-    Worker worker({data()}, systemClock());
+    Worker worker({data(), databaseOf(data())}, systemClock());
     while (worker.workOnce()) {
     }
     const std::string path = "/attempts/" + practice + "/review";
@@ -494,6 +496,22 @@ TEST_F(LiveTest, AReviewIsMadeOnceForWhoMaySeeTheAttempt) {
         EXPECT_EQ(Looker(school.address(), who).statusOf(path), 403) << who;
     const auto looks = books().audit(0, 1000, "s017");
     EXPECT_GE(std::count_if(looks.begin(), looks.end(), [](const auto& l) { return l.what == "review seen"; }), 2);
+    // What need not be kept any more goes, and its pages with it.
+    const auto pages = [&] {
+        return std::distance(fs::directory_iterator(data() / "reviews"), fs::directory_iterator());
+    };
+    ASSERT_EQ(pages(), 1);
+    Service service({.data = data(), .database = databaseOf(data())}, systemClock());
+    Housekeeper(service).round();
+    EXPECT_EQ(pages(), 1) << "its attempt is there";
+    {
+        Books open = books();
+        school::Retention(open).setForClass("c1", {1, 0}, {"server", 1});
+    }
+    Service later({.data = data(), .database = databaseOf(data())}, [] { return systemClock()() + 3 * 86'400'000; });
+    Housekeeper(later).round();
+    EXPECT_FALSE(books().attempt(practice));
+    EXPECT_EQ(pages(), 0);
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST_F(OfficeTest, AddsAPersonWhoSetsTheirOwnPasswordByACodeThatIsShownOnce) {
 }
 
 TEST_F(OfficeTest, ACodeIsGuessedNoFasterThanAPassword) {
-    Books(data()).rename("s018", "Jun", "jun", {"server", 2});
+    books().rename("s018", "Jun", "jun", {"server", 2});
     int tried = 0;
     Browser stranger(school_->address());
     while (stranger
@@ -101,11 +101,11 @@ TEST_F(OfficeTest, ACodeIsGuessedNoFasterThanAPassword) {
 
 TEST_F(OfficeTest, ChangesAnAccountAndNeverOnesOwnRights) {
     EXPECT_EQ(send("/office/people/t1/name", {{"name", "Dr. Sato-Ito"}, {"login", "sato"}})->status, 303);
-    EXPECT_EQ(Books(data()).person("t1")->login, "sato");
+    EXPECT_EQ(books().person("t1")->login, "sato");
     EXPECT_THAT(send("/office/people/t2/name", {{"name", "x"}, {"login", "sato"}})->body,
                 HasSubstr("there is a login"));
     EXPECT_EQ(send("/office/people/t2/roles", {{"teacher", "on"}, {"examiner", "on"}})->status, 303);
-    EXPECT_THAT(Books(data()).person("t2")->roles, testing::ElementsAre("examiner", "teacher"));
+    EXPECT_THAT(books().person("t2")->roles, testing::ElementsAre("examiner", "teacher"));
     EXPECT_THAT(send("/office/people/a1/roles", {{"teacher", "on"}})->body, HasSubstr("another administrator"));
     EXPECT_THAT(send("/office/people/a1/suspend", {})->body, HasSubstr("another administrator"));
     EXPECT_THAT(send("/office/people/a1/erase", {{"sure", "a1"}})->body, HasSubstr("another administrator"));
@@ -153,9 +153,9 @@ TEST_F(OfficeTest, OneClickGivesAllThatIsHeldAndOneErases) {
     EXPECT_EQ(ida.get("/office/people/s018/export")->status, 403);
     EXPECT_THAT(ida.get("/account")->body, HasSubstr("export")) << "and sees who looked";
     EXPECT_THAT(send("/office/people/s017/erase", {{"sure", "s018"}})->body, HasSubstr("not the code"));
-    EXPECT_TRUE(Books(data()).personByLogin("ida"));
+    EXPECT_TRUE(books().personByLogin("ida"));
     EXPECT_EQ(send("/office/people/s017/erase", {{"sure", "s017"}})->status, 303);
-    EXPECT_FALSE(Books(data()).personByLogin("ida"));
+    EXPECT_FALSE(books().personByLogin("ida"));
     EXPECT_EQ(ida.get("/account")->status, 303);
     EXPECT_THAT(page("/office/people/s017"), AllOf(HasSubstr("erased"), Not(HasSubstr("Ida"))));
 }
@@ -164,12 +164,12 @@ TEST_F(OfficeTest, ImportsAListFirstToSeeAndThenToDo) {
     const std::string list =
         "\xef\xbb\xbf"
         "code;name;login;role;class\r\ns030;\"Abe; Kei\";abe;student;Operative <1>\r\n";
-    const std::string before = school::asText(Books(data()).everything());
+    const std::string before = school::asText(books().everything());
     const auto dry = upload("list.csv", list, "dry");
     EXPECT_EQ(dry->status, 200);
     EXPECT_THAT(dry->body, AllOf(HasSubstr("nothing was changed yet: 3"), HasSubstr("new: s030 Abe; Kei abe"),
                                  HasSubstr("Operative &lt;1&gt;, student")));
-    EXPECT_EQ(school::asText(Books(data()).everything()), before);
+    EXPECT_EQ(school::asText(books().everything()), before);
     EXPECT_THAT(upload("list.csv", list, "it")->body, HasSubstr("Changed: 3"));
     EXPECT_THAT(upload("list.csv", list, "it")->body, HasSubstr("It changes nothing"));
     const auto wrong = upload("list.csv", "code,role\ns031,pupil\n", "it");
@@ -207,7 +207,7 @@ TEST_F(OfficeTest, KeepsClassesAndStations) {
 }
 
 TEST_F(OfficeTest, TheAuditTellsWhoDidWhatPageByPage) {
-    Books open(data());
+    Books open = books();
     for (int i = 0; i < 250; ++i)
         open.note({"t1", 1000 + i}, "look", "s018", std::to_string(i));
     const std::string first = page("/office/audit?about=s018");

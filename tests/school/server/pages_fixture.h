@@ -15,7 +15,7 @@ class PagesTest : public SchoolTest {
   protected:
     void SetUp() override {
         SchoolTest::SetUp();
-        Books open(data());
+        Books open = books();
         const Act act{"server", 1};
         const std::string hash = school::hashOfPassword(kPassword);
         const auto person = [&](const char* code, const char* name, const char* role) {
@@ -43,7 +43,7 @@ class PagesTest : public SchoolTest {
         chair_ = std::make_unique<Chair>();
         assigned_ = push("as1", 0);
         practice_ = push("", 1);
-        Worker worker({data()}, systemClock());
+        Worker worker({data(), databaseOf(data())}, systemClock());
         while (worker.workOnce()) {
         }
     }
@@ -53,7 +53,7 @@ class PagesTest : public SchoolTest {
         p.station = std::string(32, 'c'), p.person = "s017", p.assignment = assignment;
         p.files = {school::sha256Of(session())};
         p.received = 10;
-        Books open(data());
+        Books open = books();
         if (number == 0) {
             (void)open.enrolStation(kCode, p.station, std::string(64, 'd'), 2);
             const std::vector<std::byte> bytes = core::readFile(session());

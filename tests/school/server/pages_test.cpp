@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each person sees of a school in a browser, and what not.
+#include "handpiece/school/store/lti_books.h"
 #include "school/server/pages_fixture.h"
 
 namespace handpiece::school_server {
@@ -79,7 +80,7 @@ TEST_F(PagesTest, SayWhatTheServerFoundAndWhoseItIs) {
     ASSERT_EQ(examiner.logIn("e1"), 303);
     EXPECT_THAT(examiner.get("/attempts/" + assigned_)->body, AllOf(Not(HasSubstr("Ida")), HasSubstr("s017")));
     // Practice that is shared is seen by the class's teacher.
-    Books open(data());
+    Books open = books();
     open.share(practice_, true, {"s017", 20});
     EXPECT_EQ(teacher.get("/attempts/" + practice_)->status, 200);
     Browser stranger(school.address());
@@ -90,6 +91,29 @@ TEST_F(PagesTest, SayWhatTheServerFoundAndWhoseItIs) {
     for (const school::AuditLine& line : open.audit(0, 1000, "s017"))
         looks += line.what == "attempt seen" || line.what == "result seen" ? 1 : 0;
     EXPECT_EQ(looks, 4u);
+}
+
+TEST_F(PagesTest, TheLogInPageLeadsToWhatTheSchoolHasBesidesPasswords) {
+    const auto page = [&](const School::Odd& odd) {
+        const School school(data(), odd);
+        return httplib::Client(school.address()).Get("/login")->body;
+    };
+    School::Odd odd;
+    odd.database = databaseOf(data());
+    EXPECT_THAT(page(odd), AllOf(Not(HasSubstr("/sign-on")), Not(HasSubstr("learning platform"))));
+    odd.address = "https://school.example";
+    EXPECT_THAT(page(odd), Not(HasSubstr("learning platform"))) << "no platform is known yet";
+    {
+        Books open = books();
+        school::LtiPlatform platform;
+        platform.issuer = "https://platform.example", platform.client = "c";
+        platform.authAddress = platform.issuer + "/login", platform.tokenAddress = platform.issuer + "/token";
+        platform.keysAddress = platform.issuer + "/keys", platform.deployments = {"1"};
+        (void)school::LtiBooks(open).set(platform, {"server", 1});
+    }
+    EXPECT_THAT(page(odd), HasSubstr("From a learning platform"));
+    odd.signOn = {{"127.0.0.1"}, "X-Handpiece-User", std::string(32, 's')};
+    EXPECT_THAT(page(odd), HasSubstr("href=\"/sign-on\""));
 }
 
 TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
@@ -122,7 +146,7 @@ TEST_F(PagesTest, ALogInEnds) {
     // Whoever is erased is nobody from then on.
     Browser student(school.address());
     ASSERT_EQ(student.logIn("s018"), 303);
-    Books(data()).erase("s018", {"server", 5});
+    books().erase("s018", {"server", 5});
     EXPECT_EQ(student.get("/classes")->get_header_value("Location"), "/login");
     for (const char* header : {"Content-Security-Policy", "X-Content-Type-Options", "Referrer-Policy", "Cache-Control"})
         EXPECT_NE(http.Get("/login")->get_header_value(header), "") << header;

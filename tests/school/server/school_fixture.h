@@ -7,6 +7,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <map>
+#include <mutex>
 #include <span>
 #include <thread>
 
@@ -17,6 +20,7 @@
 #include "school/http.h"
 #include "school/server.h"
 #include "school/station.h"
+#include "school/store/postgres_server.h"
 
 namespace handpiece::school_server {
 
@@ -24,6 +28,34 @@ namespace fs = std::filesystem;
 using school::Act;
 using school::Books;
 using school_station::Enrolment;
+
+/// HANDPIECE_TEST_DATABASE=postgres: on a real server of this program's own, else on SQLite.
+inline bool isOnPostgres() {
+    const char* const asked = std::getenv("HANDPIECE_TEST_DATABASE");
+    return asked != nullptr && std::string(asked) == "postgres";
+}
+inline test::PostgresServer* postgres() {
+    static const std::unique_ptr<test::PostgresServer> one = test::PostgresServer::start();
+    return one.get();
+}
+/// Where the books of this folder are: a schema of its own, made when it is first asked for; empty: SQLite in it.
+inline std::string databaseOf(const fs::path& data) {
+    if (!isOnPostgres()) return {};
+    static std::mutex mutex;
+    static std::map<fs::path, std::string> schemas;
+    const std::lock_guard lock(mutex);
+    const auto [place, isNew] = schemas.try_emplace(data);
+    if (isNew) place->second = postgres()->newSchema();
+    return postgres()->address(place->second);
+}
+/// Skips all where that server is not installed.
+class NeedsPostgres : public testing::Environment {
+  public:
+    void SetUp() override {
+        if (isOnPostgres() && !postgres()) GTEST_SKIP() << "postgresql-15 is not installed: not tested on it";
+    }
+};
+inline const testing::Environment* const kNeedsPostgres = testing::AddGlobalTestEnvironment(new NeedsPostgres);
 
 inline constexpr const char* kCode = "ABC-DEF-GHJ-KMN";
 
@@ -84,10 +116,23 @@ class School {
   public:
     explicit School(const fs::path& data, std::size_t workers = 0, int port = 0,
                     std::chrono::milliseconds slow = std::chrono::seconds(10))
-        : data_(data) {
+        : School(data, Odd{.port = port, .workers = workers, .slow = slow, .database = databaseOf(data)}) {}
+    /// What is otherwise than usual.
+    struct Odd {
+        int port = 0;
+        std::size_t workers = 0;
+        std::chrono::milliseconds slow = std::chrono::seconds(10);
+        int oldest = school_wire::kOldestProtocol, newest = school_wire::kProtocol;
+        std::string database{};
+        SignOn signOn{};
+        std::string address{};
+    };
+    School(const fs::path& data, const Odd& odd) : data_(data) {
         Settings settings;
-        settings.slow = slow;
-        settings.data = data, settings.port = port, settings.workers = workers;
+        settings.data = data, settings.database = odd.database;
+        settings.port = odd.port, settings.workers = odd.workers, settings.slow = odd.slow;
+        settings.oldestProtocol = odd.oldest, settings.newestProtocol = odd.newest;
+        settings.signOn = odd.signOn, settings.address = odd.address;
         server_ = std::make_unique<Server>(settings);
         thread_ = std::thread([this] { server_->run(); });
         httplib::Client http(address());
@@ -102,8 +147,9 @@ class School {
     [[nodiscard]] std::string address() const { return fmt::format("http://127.0.0.1:{}", server_->port()); }
     [[nodiscard]] int port() const { return server_->port(); }
 
-    static void furnish(const fs::path& data) {
-        Books books(data);
+    static void furnish(const fs::path& data) { furnish(data, databaseOf(data)); }
+    static void furnish(const fs::path& data, const std::string& database) {
+        Books books(data, database);
         const Act act{"server", 1};
         const school::Person student{"s017", "Ida", "ida", "", "", {"student"}, 1, 0};
         books.add(std::span(&student, 1), act);
@@ -162,7 +208,7 @@ class SchoolTest : public testing::Test {
   protected:
     void SetUp() override { School::furnish(data()); }
     [[nodiscard]] fs::path data() const { return folder_.path() / "school"; }
-    [[nodiscard]] Books books() const { return Books(data()); }
+    [[nodiscard]] Books books() const { return Books(data(), databaseOf(data())); }
     [[nodiscard]] std::vector<school::Score> scoresOf(const std::string& attempt) const {
         return books().scoresOf(attempt);
     }

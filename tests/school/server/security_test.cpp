@@ -58,7 +58,7 @@ std::string inTable(const Route& route, int status) {
 
 TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
     School school(data());
-    Books open(data());
+    Books open = books();
     const Act act{"server", 5};
     const std::vector<std::pair<const char*, const char*>> who{
         {"nobody", ""}, {"student", "s018"}, {"teacher", "t1"}, {"examiner", "e1"}, {"administrator", "a1"}};
@@ -118,7 +118,7 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
 
 TEST_F(SecurityTest, WhatIsInjectedIsTextOrRefusedAndNeverAFault) {
     School school(data());
-    Books open(data());
+    Books open = books();
     const std::string token = school::newSecret();
     open.addLogin(token, "a1", systemClock()() + 1'000'000, {"server", 5});
     const std::vector<std::string> strings{"' OR '1'='1",
@@ -260,6 +260,37 @@ TEST_F(SecurityTest, WhoSendsAByteASecondStopsNobodyAndIsCutOff) {
     }
     EXPECT_EQ(alive, 0);
     for (const int line : lines)
+        close(line);
+}
+
+TEST_F(SecurityTest, ConnectionsThatAreNotTheServersAreLeftAlone) {
+    School school(data(), 0, 0, std::chrono::seconds(1));
+    // Another server of this process, at the same port of another address: nobody says a word there.
+    const auto at = [&](in_addr_t host) {
+        sockaddr_in to{};
+        to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(school.port()));
+        to.sin_addr.s_addr = htonl(host);
+        return to;
+    };
+    const sockaddr_in other = at(INADDR_LOOPBACK + 1), own = at(INADDR_LOOPBACK);
+    const int listening = socket(AF_INET, SOCK_STREAM, 0), there = socket(AF_INET, SOCK_STREAM, 0),
+              here = socket(AF_INET, SOCK_STREAM, 0);
+    ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&other), sizeof other), 0);
+    ASSERT_EQ(listen(listening, 1), 0);
+    ASSERT_EQ(connect(there, reinterpret_cast<const sockaddr*>(&other), sizeof other), 0);
+    const int accepted = accept(listening, nullptr, nullptr);
+    ASSERT_EQ(connect(here, reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
+    // The server's own of that age is cut off.
+    const timeval patience{20, 0};
+    setsockopt(here, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
+    ASSERT_EQ(send(here, "G", 1, MSG_NOSIGNAL), 1);
+    char byte = 0;
+    EXPECT_LE(recv(here, &byte, 1, 0), 0);
+    EXPECT_NE(errno, EAGAIN);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_EQ(recv(there, &byte, 1, MSG_DONTWAIT), -1) << "was cut off";
+    EXPECT_EQ(errno, EAGAIN);
+    for (const int line : {listening, there, here, accepted})
         close(line);
 }
 

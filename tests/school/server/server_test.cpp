@@ -34,7 +34,7 @@ TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
     EXPECT_EQ(chair.push(forgot).bytes, 0u);
     EXPECT_EQ(books().attemptsOf("s017").size(), 1u);
 
-    Worker worker({data()}, systemClock());
+    Worker worker({data(), databaseOf(data())}, systemClock());
     EXPECT_TRUE(worker.workOnce());
     EXPECT_FALSE(worker.workOnce()) << "once";
     const std::vector<school::Score> scores = scoresOf(attempt);
@@ -64,7 +64,7 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
         core::writeFile(chair.home() / "sessions" / "two.h5", bytes);
     }
     (void)chair.push(enrolment);
-    Worker worker({data()}, systemClock());
+    Worker worker({data(), databaseOf(data())}, systemClock());
     while (worker.workOnce()) {
     }
     EXPECT_THAT(scoresOf(boast).front().reason, HasSubstr("its station said 99 of 100"));
@@ -75,12 +75,12 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
 TEST_F(SchoolTest, OnePersonsSessionIsNotAnothersWork) {
     School school(data());
     {
-        Books open(data());
+        Books open = books();
         const school::Person other{"s018", "Jun", "jun", "", "", {"student"}, 1, 0};
         open.add(std::span(&other, 1), {"server", 1});
         open.offerCode("ABC-DEF-GHJ-KMP", "chair 2", 4'000'000'000'000, {"server", 1});
     }
-    Worker worker({data()}, systemClock());
+    Worker worker({data(), databaseOf(data())}, systemClock());
     Chair own, borrowed;
     Enrolment mine = school_station::enrol(school.address(), kCode, "s017");
     const std::string first = own.finish(session(), "one.h5");
@@ -98,7 +98,7 @@ TEST_F(SchoolTest, OnePersonsSessionIsNotAnothersWork) {
 TEST_F(SchoolTest, WorkOnWhatTheSchoolGaveIsToldAsThat) {
     School school(data());
     {
-        Books open(data());
+        Books open = books();
         const Act act{"server", 1};
         open.add(school::SchoolClass{"c1", "Class", "", 0, 1, 0}, act);
         const school::Enrolment one{"c1", "s017", "student"};
@@ -144,7 +144,7 @@ TEST_F(SchoolTest, WhatWasCutOffGoesOnFromThere) {
     const std::vector<std::byte> bytes = core::readFile(session());
     const std::size_t half = bytes.size() / 2;
     {
-        Books open(data());
+        Books open = books();
         const auto station = open.stationByKey(enrolment.key);
         ASSERT_TRUE(station);
         (void)open.append({station->id, hash, bytes.size()}, 0, std::span(bytes).first(half), 1);
@@ -156,7 +156,7 @@ TEST_F(SchoolTest, ThirtyPushAtOnceAndNoneIsLostOrDoubled) {
     School school(data());
     std::vector<std::string> codes;
     {
-        Books open(data());
+        Books open = books();
         for (int i = 0; i < 30; ++i)
             open.offerCode(codes.emplace_back(school::newStationCode()), fmt::format("chair {}", i), 4'000'000'000'000,
                            {"server", 1});
@@ -225,7 +225,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
             EXPECT_EQ(result->status, 401) << route.method << " " << path;
         }
         // Of another version: told, before anything else.
-        const auto other = http.Get(path, {{"Handpiece-Protocol", "2"}});
+        const auto other = http.Get(path, {{"Handpiece-Protocol", std::to_string(school_wire::kProtocol + 1)}});
         if (route.method == "GET") {
             EXPECT_EQ(other->status, 426);
         }
@@ -243,7 +243,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
                 HasSubstr("was used"));
     // A key that was taken back.
     {
-        Books open(data());
+        Books open = books();
         open.revoke(once.station, {"server", 2});
     }
     EXPECT_THAT(test::errorOf([&] { (void)school_station::status(once); }), HasSubstr("does not know this station"));

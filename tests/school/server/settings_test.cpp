@@ -47,12 +47,15 @@ TEST_F(SchoolSettingsTest, TheCommandLineCountsBeforeTheEnvironmentBeforeTheFile
     EXPECT_EQ(settle().data, "school");
     EXPECT_EQ(settle().listen, "127.0.0.1:8620");
     EXPECT_EQ(settle().workers, 1u);
+    EXPECT_EQ(settle().connections, 60u);
     system_ =
         file("system.toml", "data = \"/system\"\nlisten = \"0.0.0.0:1\"\nworkers = 3\ndatabase = \"postgresql://x\"\n");
     EXPECT_EQ(settle().data, "/system");
     EXPECT_EQ(settle().workers, 3u);
     environment_["HANDPIECE_SCHOOL_DATA"] = "/environment";
     environment_["HANDPIECE_SCHOOL_WORKERS"] = "0";
+    environment_["HANDPIECE_SCHOOL_CONNECTIONS"] = "20";
+    EXPECT_EQ(settle().connections, 20u);
     EXPECT_EQ(settle().data, "/environment");
     EXPECT_EQ(settle().workers, 0u);
     EXPECT_EQ(settle().listen, "0.0.0.0:1") << "the rest is still the file's";
@@ -75,6 +78,8 @@ TEST_F(SchoolSettingsTest, WhatIsWrongIsToldWithItsPlace) {
     EXPECT_THAT(errorOf(given), AllOf(HasSubstr("a.toml"), HasSubstr("lisen")));
     given.file = file("a.toml", "\n\nworkers = 1000\n");
     EXPECT_THAT(errorOf(given), AllOf(HasSubstr("line 3"), HasSubstr("0 to 64")));
+    given.file = file("a.toml", "connections = 0\n");
+    EXPECT_THAT(errorOf(given), AllOf(HasSubstr("line 1"), HasSubstr("1 to 1000")));
     given.file = file("a.toml", "data = 3\n");
     EXPECT_THAT(errorOf(given), AllOf(HasSubstr("line 1"), HasSubstr("data")));
     given.file = file("a.toml", "data = \n");

@@ -47,7 +47,7 @@ class TeachingTest : public SchoolTest {
     static constexpr std::size_t kStudents = 6;
     void SetUp() override {
         SchoolTest::SetUp();
-        Books open(data());
+        Books open = books();
         const Act act{"server", 1};
         const std::string hash = school::hashOfPassword(kPassword);
         const auto person = [&](std::string code, const char* name, const char* role) {
@@ -78,7 +78,7 @@ class TeachingTest : public SchoolTest {
         (void)open.append({station_, school::sha256Of(session()), bytes.size()}, 0, bytes, 3);
         // The first is real work; of the others the server's score is made up here, each by the rubric.
         attempts_.push_back(push(open, 0, true));
-        Worker worker({data()}, systemClock());
+        Worker worker({data(), databaseOf(data())}, systemClock());
         while (worker.workOnce()) {
         }
         const std::vector<school::Score> scores = open.scoresOf(attempts_.front());

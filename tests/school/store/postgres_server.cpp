@@ -43,7 +43,7 @@ pid_t launch(const std::vector<std::string>& words, const fs::path& log) {
 
 }  // namespace
 
-std::unique_ptr<PostgresServer> PostgresServer::start() {
+std::unique_ptr<PostgresServer> PostgresServer::start(int connections) {
     std::string programs;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator("/usr/lib/postgresql", none))
@@ -52,6 +52,7 @@ std::unique_ptr<PostgresServer> PostgresServer::start() {
     if (programs.empty()) return nullptr;
     std::unique_ptr<PostgresServer> server(new PostgresServer);
     server->programs_ = programs;
+    server->connections_ = connections;
     const fs::path folder = server->folder_.path();
     giveToServer(folder);
     // An order of letters that is not that of bytes, as a school's server has it.
@@ -79,9 +80,10 @@ void PostgresServer::run() {
 void PostgresServer::launchServer() {
     const std::string folder = folder_.path().string();
     // Not onto the disk itself: what is killed here are processes, and the kernel keeps what they wrote.
-    server_ = launch({programs_ + "/postgres", "-D", folder + "/data", "-k", folder, "-c", "listen_addresses=", "-c",
-                      "shared_buffers=32MB", "-c", "max_connections=60", "-c", "fsync=off"},
-                     folder_.path() / "server.log");
+    server_ =
+        launch({programs_ + "/postgres", "-D", folder + "/data", "-k", folder, "-c", "listen_addresses=", "-c",
+                "shared_buffers=32MB", "-c", "max_connections=" + std::to_string(connections_), "-c", "fsync=off"},
+               folder_.path() / "server.log");
 }
 
 void PostgresServer::wait(bool untilUp) {

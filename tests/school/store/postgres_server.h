@@ -17,7 +17,7 @@ class PostgresServer {
   public:
     /// None where Debian's package is not there; a test skips then. Throws std::runtime_error where it does not start.
     /// As root it runs as another user, for PostgreSQL refuses root.
-    static std::unique_ptr<PostgresServer> start();
+    static std::unique_ptr<PostgresServer> start(int connections = 60);
     ~PostgresServer();
     PostgresServer(const PostgresServer&) = delete;
     PostgresServer& operator=(const PostgresServer&) = delete;
@@ -44,7 +44,7 @@ class PostgresServer {
     core::PrivateFolder folder_;
     std::string programs_;
     pid_t server_ = 0;
-    int schemas_ = 0;
+    int connections_ = 0, schemas_ = 0;
 };
 
 }  // namespace handpiece::test

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -125,7 +126,95 @@ constexpr const char* kSaid[] = {
     "said.by-chance",
 };
 
+/// Why work was refused, or another score was found, as the books keep it: {} stands for what differs.
+constexpr const char* kReasons[] = {
+    "reason.no-session",
+    "reason.other-exercise",
+    "reason.other-number",
+    "reason.other-session",
+    "reason.station-said",
+    "reason.attempt-gone",
+    "reason.another-person",
+    "reason.no-exercise",
+    "reason.no-rubric",
+    "reason.of-session",
+    "reason.full-removal",
+    "reason.as-hull",
+    "reason.other-surroundings",
+    "reason.foreign-bur",
+    "reason.unknown-bur",
+    "reason.other-tissue",
+    "reason.bur-shape",
+    "reason.bur-cuts",
+    "reason.unknown-drive",
+    "reason.strong-drive",
+    "reason.other-engine",
+    "reason.cut-off",
+    "reason.broken-pause",
+    "reason.other-tooth",
+    "reason.goes-on",
+    "reason.from-elsewhere",
+    "reason.none-leaves",
+    "reason.not-along",
+    "reason.than-its-sessions",
+    "reason.went-wrong",
+};
+
+/// What stands in the places of a sentence; none where it is another one.
+std::optional<std::vector<std::string>> placesIn(std::string_view sentence, std::string_view pattern) {
+    constexpr std::string_view kPlace = "{}";
+    std::vector<std::string> places;
+    const std::string_view start = pattern.substr(0, pattern.find(kPlace));
+    if (!sentence.starts_with(start)) return {};
+    sentence.remove_prefix(start.size()), pattern.remove_prefix(start.size());
+    while (!pattern.empty()) {
+        pattern.remove_prefix(kPlace.size());
+        const std::string_view next = pattern.substr(0, pattern.find(kPlace));
+        pattern.remove_prefix(next.size());
+        // The last piece ends the sentence.
+        const std::size_t end = pattern.empty()
+                                    ? (sentence.ends_with(next) ? sentence.size() - next.size() : sentence.npos)
+                                    : sentence.find(next);
+        if (end == sentence.npos) return {};
+        places.emplace_back(sentence.substr(0, end));
+        sentence.remove_prefix(end + next.size());
+    }
+    return sentence.empty() ? std::optional(places) : std::nullopt;
+}
+
+/// What it says of a session may be several sentences.
+constexpr std::string_view kOfSession = "reason.of-session";
+
+/// Of a place: what has a word of its own.
+std::string placeSaid(const std::string& id, const std::string& place) {
+    if (id == "reason.station-said" && (place == "yes" || place == "no" || place == "teacher"))
+        return words().text(place == "yes"  ? "assessment.passed"
+                            : place == "no" ? "assessment.not-passed"
+                                            : "assessment.teacher");
+    if (id == "reason.other-tissue" && words().has("tissue." + place)) return words().text("tissue." + place);
+    return id == kOfSession ? reasonOf(place) : place;
+}
+
+bool isSeveral(const std::string& place) {
+    return place.find("; ") != place.npos;
+}
+
 }  // namespace
+
+std::string reasonOf(const std::string& english) {
+    const config::Words& source = config::Words::in("en");
+    for (const char* id : kReasons)
+        if (auto places = placesIn(english, source.text(id));
+            places && std::none_of(places->begin(), places->end() - (id == kOfSession ? 1 : 0), isSeveral)) {
+            for (std::string& place : *places)
+                place = placeSaid(id, place);
+            return words()(config::Phrase{id, std::move(*places)});
+        }
+    // Several in one sentence.
+    if (!isSeveral(english)) return said(english);
+    const std::size_t next = english.find("; ");
+    return reasonOf(english.substr(0, next)) + "; " + reasonOf(english.substr(next + 2));
+}
 
 std::string said(const std::string& english) {
     const config::Words& source = config::Words::in("en");

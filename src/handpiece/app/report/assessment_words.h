@@ -19,6 +19,8 @@ namespace handpiece::report {
 [[nodiscard]] std::string whyOf(const score::Assessment& assessment, const rubric::Rubric& rubric);
 /// An evidence's text, a reason or a proof, which are English, in the program's language where it is known.
 [[nodiscard]] std::string said(const std::string& english);
+/// Why a server refused work or found another score (school::Score::reason), which is English in the books: likewise.
+[[nodiscard]] std::string reasonOf(const std::string& english);
 /// "1.52 ± 0.03 mm".
 [[nodiscard]] std::string valueOf(const score::CriterionScore& score);
 /// Where, in words and numbers.

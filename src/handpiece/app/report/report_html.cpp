@@ -252,6 +252,10 @@ void HtmlReport::progress(double done, double all, std::string_view words) {
                     all, done, escaped(words));
 }
 
+void HtmlReport::keepUp(std::string_view address) {
+    body_ += fmt::format("<div id=\"keep-up\" data-from=\"{}\"></div>\n", escaped(address));
+}
+
 void HtmlReport::facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows) {
     std::vector<std::vector<std::string>> cells;
     for (const auto& [what, value] : rows)

@@ -62,6 +62,9 @@ class HtmlReport {
     void form(const Form& form);
     /// How far something is: `done` of `all`, in words as well.
     void progress(double done, double all, std::string_view words);
+    /// What progress() shows moves on by itself, where a script runs (apps/web/live), as the page at `address` has it,
+    /// until that one says no more that it does.
+    void keepUp(std::string_view address);
     /// What, and how much.
     void facts(std::string_view caption, const std::vector<std::pair<std::string, std::string>>& rows);
     /// `svg` as made by toSvg() or stroboscopeSvg(), without a style of its own.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/plot.h"
 #include "handpiece/base/config/words.h"
 
@@ -29,7 +30,7 @@ std::string reviewWaitPage(const Looker& who, const std::string& attempt, double
     HtmlReport page = sitePage(words()("school-live.review"), who);
     page.link("/attempts/" + attempt, words()("school-live.to-attempt"));
     if (!trouble.empty()) {
-        page.paragraph(words()("school-live.no-review", trouble), Tone::bad);
+        page.paragraph(words()("school-live.no-review", reasonOf(trouble)), Tone::bad);
         return page.text();
     }
     page.live(

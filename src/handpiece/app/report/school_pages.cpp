@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/app/statements/statements.h"
 #include "handpiece/base/config/words.h"
@@ -57,7 +58,7 @@ FormField tokenField(const Looker& who) {
     return {"token", {}, "hidden", who.requestToken};
 }
 
-std::string loginPage(const std::string& login, const std::string& wrong) {
+std::string loginPage(const std::string& login, const std::string& wrong, const OtherLogIns& others) {
     HtmlReport page(words()("school.title"));
     page.ofSite({}, {}, {});
     if (!wrong.empty()) page.paragraph(wrong, Tone::bad);
@@ -67,6 +68,8 @@ std::string loginPage(const std::string& login, const std::string& wrong) {
     name.isRequired = password.isRequired = true;
     page.form({"/login", {name, password}, {{words()("school.log-in")}}});
     page.link("/first", words()("school-office.have-code"));
+    if (others.signOn) page.link("/sign-on", words()("school.sign-on"));
+    if (others.platform) page.paragraph(words()("school.by-platform"), Tone::note);
     return page.text();
 }
 
@@ -154,11 +157,14 @@ std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const
         const school::Score& s = scores.back();
         page.paragraph(fmt::format("{} {}", stateWord(s.state), said(s.score, s.maxScore)),
                        s.state == "proven" ? Tone::good : Tone::bad);
-        if (!s.reason.empty()) page.paragraph(s.reason, s.state == "proven" ? Tone::note : Tone::bad);
+        if (!s.reason.empty()) page.paragraph(reasonOf(s.reason), s.state == "proven" ? Tone::note : Tone::bad);
         if (!s.result.empty()) page.link("/attempts/" + a.id + "/result", words()("school.whole-result"));
     }
     if (!p.files.empty()) page.link("/attempts/" + a.id + "/review", words()("school-live.review"));
     const auto fact = [](const char* word, std::string value) { return std::pair(words()(word), std::move(value)); };
+    // By the clock of its station, as far as that can be found to be wrong.
+    constexpr school::Milliseconds kAgrees = 60'000;
+    if (a.finished > p.received + kAgrees) page.paragraph(words()("school.clock-ahead"), Tone::note);
     page.facts(words()("school.station-says"),
                {fact("school.finished", momentOf(a.finished)), fact("school.received", momentOf(p.received)),
                 fact("class.score", said(a.score, a.maxScore)), fact("class.verdict", passedWord(a.passed)),

@@ -28,7 +28,11 @@ using Names = std::map<std::string, std::string>;
 /// Every form that changes something has it.
 [[nodiscard]] FormField tokenField(const Looker& who);
 
-[[nodiscard]] std::string loginPage(const std::string& login, const std::string& wrong);
+/// What the school has besides passwords: a proxy's single sign-on, learning platforms.
+struct OtherLogIns {
+    bool signOn = false, platform = false;
+};
+[[nodiscard]] std::string loginPage(const std::string& login, const std::string& wrong, const OtherLogIns& others);
 [[nodiscard]] std::string classesPage(const Looker& who, const std::vector<school::SchoolClass>& classes);
 /// Students by their names or codes, a column an assignment: score, whether it is proven, marks; each leads to its
 /// work.

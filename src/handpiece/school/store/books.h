@@ -157,8 +157,8 @@ struct BookTable {
 /// person did it.
 ///
 /// All members throw core::Error: "store-newer", "store-locked", "store-damaged", "no-space", "not-writable" as
-/// Store's; of PostgreSQL "store-gone", "store-refused"; "books-unknown" (what, which), "books-duplicate" (what,
-/// which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
+/// Store's; of PostgreSQL "store-gone", "store-refused", "store-full"; "books-unknown" (what, which), "books-duplicate"
+/// (what, which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
 class Books {
   public:
     static constexpr int kVersion = 5;
@@ -252,6 +252,8 @@ class Books {
     /// Returns how many were added.
     std::int64_t rescore(const std::string& campaign, const std::string& assignment, const std::string& rubric,
                          const Act& act);
+    /// By the clock that all workers share: PostgreSQL's; of SQLite, which is on one machine, `own`.
+    [[nodiscard]] Milliseconds sharedTime(Milliseconds own) const;
     /// The one that waits longest, or whose worker did not come back in time.
     std::optional<Job> takeJob(const std::string& worker, Milliseconds now, Milliseconds lease);
     /// False: it is another's by now, or done; drop it.

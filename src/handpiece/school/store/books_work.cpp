@@ -364,6 +364,11 @@ std::int64_t Books::rescore(const std::string& campaign, const std::string& assi
     return added;
 }
 
+Milliseconds Books::sharedTime(Milliseconds own) const {
+    if (state_->database->engine() == Database::Engine::sqlite) return own;
+    return state_->database->number("SELECT CAST(extract(epoch FROM clock_timestamp()) * 1000 AS INT8)");
+}
+
 std::optional<Job> Books::takeJob(const std::string& worker, Milliseconds now, Milliseconds lease) {
     const bool isPostgres = state_->database->engine() == Database::Engine::postgres;
     const char* const skip = isPostgres ? " FOR UPDATE SKIP LOCKED" : "";

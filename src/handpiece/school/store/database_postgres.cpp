@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 #include <libpq-fe.h>
+#include <poll.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -115,6 +117,20 @@ PostgresDatabase::~PostgresDatabase() {
     PQfinish(connection_);
 }
 
+/// What was begun with PQconnectStart. False: not, or not soon.
+bool PostgresDatabase::completes() {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    auto wants = PQstatus(connection_) == CONNECTION_BAD ? PGRES_POLLING_FAILED : PGRES_POLLING_WRITING;
+    while (wants == PGRES_POLLING_READING || wants == PGRES_POLLING_WRITING) {
+        pollfd line{PQsocket(connection_), static_cast<short>(wants == PGRES_POLLING_READING ? POLLIN : POLLOUT), 0};
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now());
+        const int ready = poll(&line, 1, std::max(0, static_cast<int>(left.count())));
+        if (ready == 0) return false;
+        if (ready > 0 || errno != EINTR) wants = PQconnectPoll(connection_);
+    }
+    return wants == PGRES_POLLING_OK;
+}
+
 void PostgresDatabase::connect() {
     PQfinish(connection_);
     const std::string seconds = std::to_string(std::max<std::int64_t>(2, patience_.count() / 1000));
@@ -123,7 +139,16 @@ void PostgresDatabase::connect() {
                                  "dbname",          "client_encoding",  nullptr};
     const char* const values[] = {seconds.c_str(), "handpiece", "30", url_.c_str(), "UTF8", nullptr};
     connection_ = PQconnectdbParams(words, values, 1);
-    if (PQstatus(connection_) != CONNECTION_OK) failConnection();
+    if (PQstatus(connection_) != CONNECTION_OK) {
+        // Why, libpq says in the language of the server, unless it is asked for the number as well, which can be done
+        // only step by step.
+        const std::string first = firstLine(PQerrorMessage(connection_));
+        PQfinish(connection_);
+        connection_ = PQconnectStartParams(words, values, 1);
+        PQsetErrorVerbosity(connection_, PQERRORS_VERBOSE);
+        if (!completes()) failConnection(first);
+        PQsetErrorVerbosity(connection_, PQERRORS_DEFAULT);
+    }
     PQsetNoticeProcessor(
         connection_, [](void*, const char*) {}, nullptr);
     if (PQserverVersion(connection_) < 150000)
@@ -138,13 +163,17 @@ void PostgresDatabase::connect() {
             .c_str());
 }
 
-void PostgresDatabase::failConnection() {
-    std::string why = firstLine(PQerrorMessage(connection_));
+void PostgresDatabase::failConnection(const std::string& reason) {
+    const std::string last = firstLine(PQerrorMessage(connection_));
+    std::string why = reason.empty() ? last : reason;
     if (PQconnectionNeedsPassword(connection_)) why = "it asks for a password";
-    // libpq gives no number for this; the server's own refusals say FATAL, but so does one that starts or stops.
-    const bool refused = PQconnectionNeedsPassword(connection_) || why.find("authentication failed") != why.npos ||
-                         why.find("does not exist") != why.npos || why.find("no pg_hba.conf entry") != why.npos;
-    if (refused)
+    const auto says = [&last](std::string_view number) { return last.find(fmt::format(" {}: ", number)) != last.npos; };
+    if (says("53300"))
+        throw core::Error("the database server takes no more connections: " + why, where_,
+                          "wait, or raise its max_connections")
+            .as("store-full", {why});
+    // A class of its own (28: who they are), no such database, and no right to it.
+    if (PQconnectionNeedsPassword(connection_) || says("28000") || says("28P01") || says("3D000") || says("42501"))
         throw core::Error("the database server lets this user not in: " + why, where_,
                           "check user, password and database in the address")
             .as("store-refused", {why});

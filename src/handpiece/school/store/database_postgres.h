@@ -17,7 +17,8 @@ struct pg_result;
 namespace handpiece::school {
 
 /// One connection. Errors: "store-gone" (no server, a lost connection; the next transaction tries to connect again),
-/// "store-refused" (user, password, database), "store-locked", "no-space", "not-writable", "store-damaged" (all else).
+/// "store-refused" (user, password, database),
+/// "store-full" (no more connections), "store-locked", "no-space", "not-writable", "store-damaged" (all else).
 class PostgresDatabase final : public Database {
   public:
     /// @param url  postgresql://..., or libpq's key=value words.
@@ -40,12 +41,13 @@ class PostgresDatabase final : public Database {
 
   private:
     void connect();
+    [[nodiscard]] bool completes();
     /// Throws unless it went well.
     Result checked(pg_result* result);
     /// Once more on a new connection where the old one turns out to be lost and nothing was begun on it.
     template <class Ask>
     Result askedAgain(const Ask& ask);
-    [[noreturn]] void failConnection();
+    [[noreturn]] void failConnection(const std::string& reason = {});
 
     std::string url_;
     std::chrono::milliseconds patience_;

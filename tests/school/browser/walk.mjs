@@ -8,7 +8,8 @@
  */
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdirSync, writeFileSync } from "node:fs";
+import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
+import { createServer as createHttpServer } from "node:http";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import axe from "axe-core";
@@ -159,6 +160,39 @@ async function walk(browser, address, who, language, forms) {
     await context.close();
 }
 
+/**
+ * Bars move by themselves (apps/web/live), and when they are full the page comes anew, unless somebody fills in a form.
+ * @param {import("puppeteer-core").Browser} browser
+ */
+async function seeBarsMove(browser) {
+    let done = 0, loads = 0;
+    const live = readFileSync(new URL("../../../apps/web/live/live.js", import.meta.url));
+    const bars = createHttpServer((request, response) => {
+        const is = (word) => request.url.includes(word);
+        response.setHeader("content-type", is("live.js") ? "text/javascript" : "text/html");
+        if (is("live.js")) return response.end(live);
+        if (is("?progress")) ++done;
+        else if (request.url === "/") ++loads;
+        response.end(`<!DOCTYPE html><p role="status"><progress max="2" value="${done}"></progress> ${done} of 2</p>` +
+            (done < 2 ? '<div id="keep-up" data-from="?progress"></div>' : "") + '<form><input id="typed"></form>' +
+            (is("?progress") ? "" : '<script type="module" src="/live.js"></script>'));
+    });
+    await new Promise((up) => bars.listen(0, "127.0.0.1", up));
+    const page = await browser.newPage(), says = (text) => page.waitForFunction((wanted) => document.body.textContent.includes(wanted), { timeout: 30000 }, text);
+    for (const isTyping of [false, true]) {
+        done = loads = 0;
+        await page.goto(`http://127.0.0.1:${bars.address().port}/`);
+        if (isTyping) await page.type("#typed", "half");
+        await says("1 of 2");
+        if (await page.$eval("progress", (bar) => bar.value) !== 1 || loads !== 1) find("a bar does not move by itself");
+        await says("2 of 2");
+        await new Promise((later) => setTimeout(later, 1000));
+        if (loads !== (isTyping ? 1 : 2)) find(`a page whose bar is full was loaded ${loads} times${isTyping ? ", under somebody's hands" : ""}`);
+    }
+    await page.close();
+    bars.close();
+}
+
 const server = spawn(stage, [], { stdio: ["pipe", "pipe", "inherit"] });
 const address = await new Promise((done, failed) => {
     createInterface({ input: server.stdout }).once("line", done);
@@ -166,6 +200,7 @@ const address = await new Promise((done, failed) => {
 });
 const browser = await puppeteer.launch({ executablePath: process.env.CHROMIUM ?? "/usr/bin/chromium", args: ["--no-sandbox", "--disable-gpu", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"] });
 try {
+    await seeBarsMove(browser);
     for (const language of ["en", "ja"])
         for (const who of Object.keys(kPeople)) await walk(browser, address, who, language, language === "en");
 } finally {

@@ -3,64 +3,33 @@
 #include <atomic>
 #include <cstdio>
 
-#include "handpiece/school/people/secret.h"
 #include "school/server/exam_stage.h"
-#include "school/server/school_fixture.h"
+#include "school/server/pages_fixture.h"
 #include "school/server/small_picture.h"
-#include "school/worker.h"
 
 namespace handpiece::school_server {
 namespace {
 
-constexpr const char* kPassword = "a long enough one";
-
 void fill(const fs::path& data, Chair& chair) {
     School::furnish(data);
     Books books(data);
+    furnishRoles(books);
     const Act act{"server", 1};
-    const std::string hash = school::hashOfPassword(kPassword);
-    const auto person = [&](const char* code, const char* name, const char* role) {
-        return school::Person{code, name, code, "", hash, {role}, 1, 0};
-    };
-    const std::vector<school::Person> people{
-        person("t1", "Dr. Sato", "teacher"),      person("e1", "Examiner One", "examiner"),
-        person("e2", "Examiner Two", "examiner"), person("a1", "Office", "administrator"),
-        person("s018", "Jun <b>", "student"),     person("s019", "Never Came", "student")};
-    books.add(people, act);
-    books.setPassword("s017", hash, act);
-    books.add(school::SchoolClass{"c1", "Operative <1>", "", 0, 1, 0}, act);
-    books.add(school::SchoolClass{"c2", "Nobody yet", "", 0, 1, 0}, act);
+    const std::vector<school::Person> more{personAs("e2", "Examiner Two", "examiner"),
+                                           personAs("s019", "Never Came", "student")};
+    books.add(more, act);
     const std::vector<school::Enrolment> enrolments{
-        {"c1", "s017", "student"}, {"c1", "s018", "student"}, {"c1", "s019", "student"}, {"c1", "t1", "teacher"},
-        {"c1", "e1", "examiner"},  {"c1", "e2", "examiner"},  {"c2", "t1", "teacher"}};
+        {"c1", "s019", "student"}, {"c1", "e2", "examiner"}, {"c2", "t1", "teacher"}};
     books.enrol(enrolments, act);
-    const std::string exercise = rubric::hashText(tasks::contentHash(blockTask()));
-    const std::string rubricHash = rubric::hashText(rubric::hashOf(rubric::parseRubric(kRubric, "rubric.toml")));
-    for (const char* id : {"as1", "as2"})
-        books.add(
-            school::Assignment{id, "c1", exercise, rubricHash, id == std::string("as1") ? "Block & hole" : "Again",
-                               "practice", "", 1, 4'000'000'000'000},
-            act);
-    const std::string station(32, 'c');
-    (void)books.enrolStation(kCode, station, std::string(64, 'd'), 2);
-    int number = 0;
+    school::Assignment again = *books.assignment("as1");
+    again.id = "as2", again.title = "Again";
+    books.add(again, act);
     // Another's session as one's own would be refused.
     const fs::path others = data.parent_path() / "others.h5";
     recordSession(others, 2.6);
     for (const auto& [student, assignment] : std::vector<std::pair<std::string, std::string>>{
-             {"s017", "as1"}, {"s017", "as2"}, {"s017", ""}, {"s018", "as1"}}) {
-        const fs::path file = student == "s018" ? others : session();
-        school::PushedAttempt p;
-        p.attempt = *chair.store().attempt(chair.finish(file, fmt::format("{}.h5", ++number)));
-        p.station = station, p.person = student, p.assignment = assignment;
-        p.files = {school::sha256Of(file)};
-        p.received = 10;
-        const std::vector<std::byte> bytes = core::readFile(file);
-        const school::Upload upload{station, p.files.front(), bytes.size()};
-        if (const std::uint64_t have = books.received(upload, 3); have < bytes.size())
-            (void)books.append(upload, have, std::span(bytes).subspan(have), 3);
-        (void)books.push(p);
-    }
+             {"s017", "as1"}, {"s017", "as2"}, {"s017", ""}, {"s018", "as1"}})
+        (void)pushWork(books, chair, student == "s018" ? others : session(), student, assignment);
     const std::vector<std::string> sittings = holdExam(books, data, {{"s017", session()}, {"s018", others}});
     Worker worker({data}, systemClock());
     while (worker.workOnce()) {
@@ -78,7 +47,7 @@ void serve() {
     std::atomic<bool> ends{false};
     std::thread working([&] {
         httplib::Client http(school.address());
-        http.set_default_headers({{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + std::string(64, 'd')}});
+        http.set_default_headers({{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + kRoomKey}});
         school_wire::Live live;
         live.person = "s017", live.assignment = "as1";
         live.exerciseHash = rubric::hashText(tasks::contentHash(blockTask()));

@@ -248,6 +248,7 @@ TEST_F(ExamWindowTest, IsBegunByCodesHoldsItsLocksAndIsHandedOver) {
     QTest::qWait(200);
     press(300);
     EXPECT_EQ(removedMm3(), removed);
+    QTest::qWait(1000);  // the pedal comes up
     click("examPause");
     EXPECT_FALSE(part<QLabel>("examCover")->isVisible());
     picture(&window(), "exam-window");
@@ -273,6 +274,7 @@ TEST_F(ExamWindowTest, IsBegunByCodesHoldsItsLocksAndIsHandedOver) {
     // Asked once; whoever says no goes on.
     click("examHandOver");
     QTest::mouseClick(part<QPushButton>("examHandOverDialogNo"), Qt::LeftButton);
+    ASSERT_TRUE(waitFor([this] { return part<QMessageBox>("examHandOverDialog") == nullptr; }));
     EXPECT_TRUE(isStillHere());
     handOver();
     // Nothing of it stays open, and nothing of its worth is told.
@@ -355,6 +357,7 @@ TEST_F(ExamWindowTest, AWindowThatIsKilledComesBackIntoTheExam) {
     EXPECT_TRUE(isAtWork());
     click("examHandOver");
     QTest::mouseClick(part<QPushButton>("examHandOverDialogYes"), Qt::LeftButton);
+    ASSERT_TRUE(waitFor([this] { return part<QMessageBox>("examHandOverDialog") == nullptr; }));
     ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
     EXPECT_TRUE(window().errorDialog()->text().contains("does not answer"));
     window().errorDialog()->accept();

@@ -77,6 +77,7 @@ ExamDialog::ExamDialog(QWidget* parent) : QDialog(parent) {
     secondColumn->addWidget(title_);
     what_ = words("examOfferWhat", tr("What is asked"));
     what_->setAlignment(Qt::AlignLeft | Qt::AlignTop);
+    what_->setMargin(8);
     auto* scroll = new QScrollArea;
     scroll->setWidget(what_);
     scroll->setWidgetResizable(true);
@@ -174,7 +175,7 @@ void ExamDialog::showOffer(const ExamOffer& offer) {
     for (const QString& name : offer.locked)
         if (const auto help = helpOf(name.toStdString())) locked << helpWords(*help);
     locked_->setText(locked.isEmpty() ? tr("No help is locked.")
-                                      : tr("Locked: %1").arg(QLocale().createSeparatedList(locked)));
+                                      : tr("Locked: %1").arg(locked.join(QStringLiteral("; "))));
     again_->setText(tr("With this code an exam was begun here before: %1 times. This shows.").arg(offer.again));
     again_->setVisible(offer.again > 0);
     pages_->setCurrentIndex(1);

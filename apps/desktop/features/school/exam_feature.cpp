@@ -311,7 +311,6 @@ QMessageBox* ExamFeature::question(const char* name, const QString& text, const 
 }
 
 void ExamFeature::askHandOver() {
-    if (window_.findChild<QMessageBox*>(QStringLiteral("examHandOverDialog"))) return;
     QMessageBox* box =
         question("examHandOverDialog", tr("Hand your work over?"),
                  tr("This ends the exam. Nothing can be changed afterwards."), tr("Hand over"), tr("Go on working"));

@@ -47,7 +47,7 @@ class ExamWindowTest : public SchoolStation {
     }
     /// Of 30 minutes, with undo, guide and section locked; s017 has a quarter more, 10 minutes for pauses and the scale
     /// bar, which the exercise locks.
-    void makeExam(qint64 opensInS = -600, const char* hours = "2", const char* minutes = "30") {
+    void makeExam(qint64 opensInS = -600, const char* hours = "2", const char* minutes = "30", bool hasMore = true) {
         const QString d = data();
         const QString hash = makeClass(makeExercise("asked", false, {"scale-bar", "chart"}, [](tasks::Task& task) {
             task.minutes = 5.0;
@@ -57,8 +57,9 @@ class ExamWindowTest : public SchoolStation {
                         "Class I", "--opens", utc(opensInS), "--hours", hours,    "--minutes",    minutes,
                         "--lock",  "undo",    "--lock",      "guide",   "--lock", "cross-section"});
         candidate_ = school({"exam", "candidates", "--data", d, exam_}).section(' ', 1);
-        school({"exam", "candidates", "--data", d, exam_, "--person", "s017", "--extra", "25", "--pause", "10",
-                "--allow", "scale-bar"});
+        if (hasMore)
+            school({"exam", "candidates", "--data", d, exam_, "--person", "s017", "--extra", "25", "--pause", "10",
+                    "--allow", "scale-bar"});
         pin_ = school({"exam", "invigilator", "--data", d, exam_, "t01"}).section(' ', 1);
         school({"exam", "sign", "--data", d, exam_});
         const QString code = school({"code", "--data", d, "exam room 1"});
@@ -306,10 +307,11 @@ TEST_F(ExamWindowTest, DISABLED_SitsUntilItIsKilled) {
     startWithTooth();
     beginExam();
     ASSERT_TRUE(cut());
-    const std::uint64_t tick = simulator().status().ticks;
+    const double now = removedMm3();
+    // The stretch after it is in the file, and so it is.
+    const std::uint64_t tick = simulator().status().ticks + 2000;
     ASSERT_TRUE(waitFor([&] { return simulator().status().recording.writtenRecords > tick; }));
-    std::ofstream out(fs::path(std::getenv("HANDPIECE_EXAM_TEST_HOME")) / "told.txt");
-    out << removedMm3() << std::endl;
+    std::ofstream(fs::path(std::getenv("HANDPIECE_EXAM_TEST_HOME")) / "told.txt") << now << std::endl;
     for (;;)
         QTest::qWait(1000);
 }
@@ -406,12 +408,34 @@ TEST_F(ExamWindowTest, SaysWhyItCannotBegin) {
 }
 
 TEST_F(ExamWindowTest, AfterItsTimeNothingBeginsAndAtItsEndTheTimeIsToldOnce) {
-    // Six minutes in which it can be begun, of which the last has passed.
-    makeExam(-3600, "0.5");
+    // A minute of time, and one or so in which it can be begun.
+    makeExam(-270, "0.1", "1", false);
     startService();
     startWithTooth();
+    beginExam();
+    EXPECT_FALSE(part<QPushButton>("examPause")->isVisible()) << "this candidate has no minutes for it";
+    ASSERT_TRUE(cut());
+    ASSERT_TRUE(waitFor([this] { return part<QMessageBox>("examOverDialog") != nullptr; }));
+    EXPECT_TRUE(part<QMessageBox>("examOverDialog")->text().contains("time of this exam is over"));
+    QTest::mouseClick(part<QPushButton>("examOverDialogNo"), Qt::LeftButton);
+    ASSERT_TRUE(waitFor([this] { return part<QMessageBox>("examOverDialog") == nullptr; }));
+    ASSERT_TRUE(waitFor([this] { return text("examTime").startsWith("over by 00:0"); }))
+        << text("examTime").toStdString();
+    const double removed = removedMm3();
+    ASSERT_TRUE(cut()) << "nothing is taken away";
+    EXPECT_GT(removedMm3(), removed);
+    EXPECT_EQ(part<QMessageBox>("examOverDialog"), nullptr) << "it is told once";
+    handOver();
+    click("examReceiptClose");
     openDialog();
-    look(candidate_);
+    ASSERT_TRUE(waitFor([this] {
+        look(candidate_);
+        if (!part<QLineEdit>("examPin")->isVisible()) return true;
+        EXPECT_TRUE(text("examOfferAgain").contains("1 times")) << "that it was begun before shows";
+        click("examBack");
+        QTest::qWait(2000);
+        return false;
+    }));
     EXPECT_TRUE(text("examProblem").startsWith("This exam could be begun until ")) << text("examProblem").toStdString();
 }
 

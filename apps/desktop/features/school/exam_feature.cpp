@@ -64,8 +64,8 @@ ExamFeature::ExamFeature(const FeatureContext& context)
             link_.begin();
         });
     });
-    window_.commands().enableWhile(commands_[Command::begin],
-                                   [this] { return !simulator_.isBusy() && !simulator_.exam(); });
+    // Also while a tooth is being prepared, which the first time takes a while: it is given up.
+    window_.commands().enableWhile(commands_[Command::begin], [this] { return !simulator_.exam(); });
     mayClose = [this] {
         QMessageBox* box =
             question("examCloseDialog", tr("An exam runs."),
@@ -95,7 +95,9 @@ ExamFeature::ExamFeature(const FeatureContext& context)
                 link_.beginExam(candidate, invigilator, pin);
             });
     connect(dialog_, &QDialog::rejected, this, [this] {
-        if (!simulator_.exam() && !isTaken_) link_.end();
+        if (simulator_.exam() || isTaken_) return;
+        link_.end();
+        if (simulator_.mode() == Simulator::Mode::empty && !simulator_.isBusy()) simulator_.openFirst();
     });
     connect(receipt_, &ReceiptDialog::saveRequested, this, [this] {
         const QString file = window_.questions.save(

@@ -95,7 +95,7 @@ class ExamWindowTest : public SchoolStation {
     void openDialog() {
         ASSERT_TRUE(waitFor([this] { return action("actionBeginExam")->isEnabled(); }));
         action("actionBeginExam")->trigger();
-        ASSERT_TRUE(part<ExamDialog>("examDialog")->isVisible());
+        ASSERT_TRUE(waitFor([this] { return part<ExamDialog>("examDialog")->isVisible(); }));
     }
     void look(const QString& candidate) {
         type("examCandidate", candidate);

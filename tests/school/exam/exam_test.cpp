@@ -281,7 +281,7 @@ TEST_F(AtAStation, ACandidateBeginsWithAnInvigilatorAndEveryBeginningStays) {
     EXPECT_EQ(errorIdOf([&] { (void)at.begin(kCode, "t1", kPin, 0, kOpens); }), "exam-rubric-newer");
     // To look at what a code begins is to begin nothing.
     const Sitting offered = at.look(kCode, kRubricFormat, kOpens);
-    EXPECT_EQ(offered.deadline, kOpens + 31 * kMinute);
+    EXPECT_EQ(offered.deadline, kOpens + 30 * kMinute);
     EXPECT_TRUE(offered.id.empty());
     EXPECT_EQ(errorIdOf([&] { (void)at.look(kCode, kRubricFormat, kOpens - 1); }), "exam-early");
     EXPECT_EQ(errorIdOf([&] { (void)at.look("AAA-AAA-AAA-AAA", kRubricFormat, kOpens); }), "exam-candidate-unknown");

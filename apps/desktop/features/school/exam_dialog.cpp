@@ -62,7 +62,7 @@ ExamDialog::ExamDialog(QWidget* parent) : QDialog(parent) {
                 "confirmed who you are."),
              first, "examFirstNote"));
     candidate_ = field("examCandidate", tr("Candidate's code"));
-    candidate_->setPlaceholderText(QStringLiteral("123-456-789-ABC"));
+    candidate_->setPlaceholderText(QStringLiteral("123-4H6-7K9-AB2"));
     candidate_->setFont(scaledFont(font(), 1.3));
     auto* firstForm = new QFormLayout;
     firstForm->addRow(tr("Candidate's code"), candidate_);

@@ -202,4 +202,15 @@ exam::Signed receiptOf(Books& books, const school::ExamSitting& sitting, const e
     return {text, exam::signatureOf(text, key)};
 }
 
+std::string receiptFor(Books& books, const std::string& station, const std::string& id, const exam::SigningKey& key,
+                       Milliseconds now) {
+    const auto sitting = ExamBooks(books).sitting(id);
+    const auto attempt = sitting && sitting->station == station ? books.attempt(id) : std::nullopt;
+    if (!attempt) throw notHere("work of sitting", id);
+    for (const std::string& missing : books.missingFiles(station))
+        if (std::find(attempt->files.begin(), attempt->files.end(), missing) != attempt->files.end())
+            throw notHere("recording of sitting", id);
+    return exam::joined(receiptOf(books, *sitting, key, now));
+}
+
 }  // namespace handpiece::school_server

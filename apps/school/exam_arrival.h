@@ -34,4 +34,8 @@ void checkExam(school::Books& books, const school::PushedAttempt& attempt,
 [[nodiscard]] exam::Signed receiptOf(school::Books& books, const school::ExamSitting& sitting,
                                      const exam::SigningKey& key, school::Milliseconds now);
 
+/// For the station that held it, once its recordings are here. Throws core::Error "books-unknown" before.
+[[nodiscard]] std::string receiptFor(school::Books& books, const std::string& station, const std::string& sitting,
+                                     const exam::SigningKey& key, school::Milliseconds now);
+
 }  // namespace handpiece::school_server

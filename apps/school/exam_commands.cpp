@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -18,11 +20,13 @@
 #include "school/commands.h"
 #include "school/exam_arrival.h"
 #include "school/exam_desk.h"
+#include "school/exam_line.h"
 #include "school/exam_service.h"
 #include "school/exam_station.h"
 #include "school/line.h"
 #include "school/school_settings.h"
 #include "school/server.h"
+#include "school/service_manager.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::school_cli {
@@ -42,6 +46,9 @@ struct ExamOptions {
     std::string candidate, invigilator, out, receipt, key;
     double everyS = 30.0;
 };
+
+std::atomic<bool> terminated{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
 
 school::Act now() {
     return {"server", school_server::systemClock()()};
@@ -130,12 +137,15 @@ void sign(const ExamOptions& o) {
 void serve(const ExamOptions& o) {
     school_exam::ExamServiceSettings settings{o.service, o.socket};
     school_exam::ExamService service(settings);
+    std::signal(SIGTERM, [](int) { terminated = true; });
+    tellManager("READY=1");
     fmt::print("{} (Ctrl-C ends it)\n", o.socket);
     (void)std::fflush(stdout);
     std::atomic<bool> ended{false};
     std::thread ending([&] {
-        while (!studies::cancelled() && !ended)
+        while (!studies::cancelled() && !terminated && !ended)
             std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        tellManager("STOPPING=1");
         service.stop();
     });
     service.run();
@@ -325,6 +335,10 @@ void addStudentsExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     watches.option("RECORDING", o.recordings, "session.h5, in the order of the work").required();
     watches.option("--every", o.everyS, "[s]").check(cli::range(0.1, 120.0)).showDefault();
     watches.callback([options] { watch(*options); });
+    cli::Command line = top.subcommand("line", "A window's line to this station's exams, fed by it over a pipe");
+    socket(line);
+    line.option("--every", o.everyS, "how often recordings are noted [s]").check(cli::range(0.1, 120.0)).showDefault();
+    line.callback([options] { runExamLine({options->socket, options->everyS}); });
     cli::Command finishes = top.subcommand("finish", "Hands the recordings over, and ends the exam");
     socket(finishes);
     finishes.option("RECORDING", o.recordings, "session.h5, in the order of the work").required();

@@ -17,7 +17,7 @@
 namespace handpiece::school_exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam desk 1";
+constexpr std::string_view kKind = "handpiece exam desk 2";
 constexpr std::int64_t kMost = std::int64_t{1} << 53;
 
 std::string plain(std::string text) {
@@ -64,6 +64,7 @@ std::string toText(const Desk& d) {
     exam::LineWriter lines(kKind);
     lines.add("sitting", d.sitting).add("exam", d.exam).add("title", plain(d.title)).add("now_ms", d.now);
     lines.add("began_ms", d.began).add("deadline_ms", d.deadline);
+    lines.add("extra_percent", d.extraPercent).add("pause_minutes", d.pauseMinutes);
     lines.add("locked", fmt::format("{}", fmt::join(d.locked, " "))).add("again", d.again).add("waiting", d.waiting);
     lines.add("trouble", plain(d.trouble));
     return lines.text();
@@ -74,7 +75,8 @@ Desk deskFrom(std::string_view text) {
     Desk d;
     d.sitting = lines.text("sitting", 32), d.exam = lines.text("exam", 64), d.title = lines.text("title", 1000);
     d.now = lines.whole("now_ms", 0, kMost), d.began = lines.whole("began_ms", 0, kMost);
-    d.deadline = lines.whole("deadline_ms", 0, kMost);
+    d.deadline = lines.whole("deadline_ms", 0, kMost), d.extraPercent = lines.whole("extra_percent", 0, kMost);
+    d.pauseMinutes = lines.whole("pause_minutes", 0, kMost);
     d.locked = exam::partsOf(lines.text("locked", 1000), ' ');
     d.again = lines.whole("again", 0, kMost), d.waiting = lines.whole("waiting", 0, kMost);
     d.trouble = lines.text("trouble", 1000);
@@ -84,6 +86,10 @@ Desk deskFrom(std::string_view text) {
 
 Desk ExamClient::desk() const {
     return deskFrom(Line(socket_).get("/desk"));
+}
+
+std::string ExamClient::look(const std::string& candidate) const {
+    return Line(socket_).post("/look", {{"candidate", candidate}});
 }
 
 Desk ExamClient::begin(const std::string& candidate, const std::string& invigilator, const std::string& pin) const {
@@ -116,6 +122,14 @@ std::string ExamClient::finish(const std::string& sitting, const std::vector<std
 
 void ExamClient::giveUp(const std::string& sitting, const std::string& invigilator, const std::string& pin) const {
     (void)Line(socket_).post("/give-up", {{"sitting", sitting}, {"invigilator", invigilator}, {"pin", pin}});
+}
+
+std::string ExamClient::ending(const std::string& sitting) const {
+    return Line(socket_).get("/ending?sitting=" + sitting);
+}
+
+std::string ExamClient::receipt(const std::string& sitting) const {
+    return Line(socket_).get("/receipt?sitting=" + sitting);
 }
 
 }  // namespace handpiece::school_exam

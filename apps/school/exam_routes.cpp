@@ -73,6 +73,13 @@ std::vector<Entry> examRoutes(Service* of) {
              const bool isNew = takeEntry(*open, station.id, request.body, of->clock());
              answer(response, "{}", isNew ? 201 : 200);
          })},
+        {"GET", "/api/v1/exams/sittings/([0-9a-f]{32})/receipt",
+         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+             auto open = of->books.take();
+             response.set_content(
+                 receiptFor(*open, station.id, request.matches[1], examKey(of->settings.data), of->clock()),
+                 "text/plain");
+         })},
         {"GET", "/exams/([0-9A-Za-z._-]{1,64})", page(examOf)},
         {"GET", "/sittings/([0-9a-f]{32})", page(sittingOf)},
         {"GET", "/sittings/([0-9a-f]{32})/receipt", page(receiptOf)},

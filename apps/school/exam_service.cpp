@@ -12,6 +12,7 @@
 #include <condition_variable>
 #include <fstream>
 #include <mutex>
+#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "handpiece/app/assessment/score_work.h"
@@ -35,6 +36,7 @@ using httplib::Request;
 using httplib::Response;
 
 constexpr std::size_t kMostRecording = std::size_t{1} << 30;
+constexpr const char* kReceipt = "receipt.txt";
 
 /// Held while the service lives; the system lets it go with the process.
 class OneService {
@@ -102,6 +104,31 @@ struct ExamService::State {
                          throw core::Error("nobody is at an exam here", settings.folder.string(), "begin it")
                              .as("exam-none", {""});
                      const std::vector<std::byte> bytes = core::readFile(exams.sitting()->exam.exercise);
+                     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                 }));
+        http.Post("/look", on([this](const Request& r) {
+                      const exam::Sitting sitting = exams.look(field(r, "candidate"), exam::kRubricFormat, clock());
+                      const exam::Pack& pack = sitting.exam.pack;
+                      const auto exercise = exerciseOf(sitting);
+                      return nlohmann::ordered_json{
+                          {"title", pack.title},
+                          {"closes_ms", pack.closes},
+                          {"minutes", pack.minutes},
+                          {"extra_percent", sitting.candidate.extraPercent},
+                          {"pause_minutes", sitting.candidate.pauseMinutes},
+                          {"time_ms", sitting.deadline - sitting.began},
+                          {"locked", exam::lockedFor(pack, sitting.candidate, exercise.lockedHelps)},
+                          {"again", sitting.again},
+                          {"titles", exercise.title},
+                          {"instructions", exercise.instructions}}
+                          .dump();
+                  }));
+        http.Get("/ending", on([this](const Request& r) { return exam::joined(exams.endOf(field(r, "sitting"))); }));
+        http.Get("/receipt", on([this](const Request& r) {
+                     const std::string id = field(r, "sitting");
+                     const fs::path file = settings.folder / "sessions" / id / kReceipt;
+                     if (!school::isHex(id, 32) || !core::isThere(file)) return std::string();
+                     const std::vector<std::byte> bytes = core::readFile(file, 1 << 20);
                      return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
                  }));
         http.Post("/begin", on([this](const Request& r) {
@@ -175,16 +202,25 @@ struct ExamService::State {
         response.set_content("", "text/plain");
     }
 
+    static cases::Exercise exerciseOf(const exam::Sitting& sitting) {
+        return tasks::readTask(sitting.exam.exercise).toothCase.exercise.value_or(cases::Exercise{});
+    }
+    /// A desk is asked for every second or two: the exercise is read once.
+    const std::vector<std::string>& lockedIn(const exam::Sitting& sitting) const {
+        if (lockedOf != sitting.id) {
+            locked = exam::lockedFor(sitting.exam.pack, sitting.candidate, exerciseOf(sitting).lockedHelps);
+            lockedOf = sitting.id;
+        }
+        return locked;
+    }
     Desk desk() const {
         Desk d;
         d.now = clock(), d.waiting = waiting, d.trouble = trouble;
         if (const auto& s = exams.sitting()) {
             d.sitting = s->id, d.exam = s->exam.pack.exam, d.title = s->exam.pack.title;
             d.began = s->began, d.deadline = s->deadline, d.again = s->again;
-            const tasks::Task task = tasks::readTask(s->exam.exercise);
-            d.locked = exam::lockedFor(
-                s->exam.pack, s->candidate,
-                task.toothCase.exercise ? task.toothCase.exercise->lockedHelps : std::vector<std::string>{});
+            d.extraPercent = s->candidate.extraPercent, d.pauseMinutes = s->candidate.pauseMinutes;
+            d.locked = lockedIn(*s);
         }
         return d;
     }
@@ -206,6 +242,7 @@ struct ExamService::State {
                         return exams.entriesAfter(number, most);
                     },
                     [this](const std::string& sha256) { return fileOf(sha256); });
+                fetchReceipts(exams.identity(), withoutReceipt());
                 const std::lock_guard lock(mutex);
                 waiting = 0;
             } catch (const std::exception& e) {
@@ -219,6 +256,19 @@ struct ExamService::State {
             hasNews = false;
         }
     }
+    std::vector<std::pair<std::string, fs::path>> withoutReceipt() {
+        std::vector<std::pair<std::string, fs::path>> all;
+        std::error_code none;
+        for (fs::directory_iterator at(settings.folder / "sessions", none), end; !none && at != end;
+             at.increment(none)) {
+            const std::string id = at->path().filename().string();
+            if (!school::isHex(id, 32) || core::isThere(at->path() / kReceipt)) continue;
+            const std::lock_guard lock(mutex);
+            if (exams.sitting() && exams.sitting()->id == id) continue;
+            all.emplace_back(id, at->path() / kReceipt);
+        }
+        return all;
+    }
     fs::path fileOf(const std::string& sha256) const {
         std::error_code none;
         for (fs::recursive_directory_iterator at(settings.folder / "sessions", none), end; !none && at != end;
@@ -231,7 +281,9 @@ struct ExamService::State {
     const school_server::Clock clock;
     const OneService one;
     std::mutex mutex;
-    exam::Invigilation exams;  ///< guarded by `mutex`
+    exam::Invigilation exams;                 ///< guarded by `mutex`
+    mutable std::string lockedOf;             ///< sitting; guarded by `mutex`
+    mutable std::vector<std::string> locked;  ///< guarded by `mutex`
     std::int64_t waiting = 0;
     std::string trouble;
     std::condition_variable news;

@@ -7,6 +7,7 @@
 
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/exam/lines.h"
+#include "handpiece/school/exam/receipt.h"
 #include "handpiece/school/store/content_files.h"
 #include "school/line.h"
 #include "school/send_file.h"
@@ -111,6 +112,23 @@ Told pushExams(const exam::StationIdentity& station,
             ++told.files;
         }
     return told;
+}
+
+void fetchReceipts(const exam::StationIdentity& station,
+                   const std::vector<std::pair<std::string, std::filesystem::path>>& sittings) {
+    if (sittings.empty()) return;
+    Line line(station.server, station.key);
+    for (const auto& [sitting, file] : sittings) {
+        std::string receipt;
+        try {
+            receipt = line.get("/api/v1/exams/sittings/" + sitting + "/receipt");
+        } catch (const core::Error& e) {
+            if (e.id() != "books-unknown") throw;
+            continue;
+        }
+        (void)exam::openedReceipt(receipt, station.serverKey, "the exam's receipt");
+        core::writeFile(file, receipt, {.ownerOnly = true});
+    }
 }
 
 }  // namespace handpiece::school_exam

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "handpiece/school/exam/invigilation.h"
@@ -32,5 +33,10 @@ struct Told {
 Told pushExams(const exam::StationIdentity& station,
                const std::function<std::vector<exam::Signed>(std::int64_t, std::size_t)>& entriesAfter,
                const std::function<std::filesystem::path(const std::string& sha256)>& fileOf);
+
+/// Asks for the receipts of sittings that are there, each checked and put into its file. What the server has not whole
+/// yet comes another time.
+void fetchReceipts(const exam::StationIdentity& station,
+                   const std::vector<std::pair<std::string, std::filesystem::path>>& sittings);
 
 }  // namespace handpiece::school_exam

@@ -2,17 +2,11 @@
 // handpiece serve: the school's server.
 #include <fmt/format.h>
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
-
 #include <atomic>
-#include <cerrno>
 #include <charconv>
 #include <csignal>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <thread>
@@ -22,6 +16,7 @@
 #include "school/commands.h"
 #include "school/school_settings.h"
 #include "school/server.h"
+#include "school/service_manager.h"
 #include "school/worker.h"
 #include "studies/progress_bar.h"
 
@@ -51,24 +46,6 @@ std::string secretIn(const std::string& file) {
         throw core::Error("the proxy's secret is too short", file,
                           "32 characters or more, by chance: openssl rand -hex 32");
     return secret;
-}
-
-/// To the service manager that started this program, if one did (sd_notify(3)).
-void tellManager(const char* state) {
-    const char* const address = std::getenv("NOTIFY_SOCKET");
-    if (!address || (*address != '/' && *address != '@')) return;
-    sockaddr_un to{};
-    to.sun_family = AF_UNIX;
-    const std::size_t length = std::strlen(address);
-    if (length >= sizeof to.sun_path) return;
-    std::memcpy(to.sun_path, address, length);
-    if (*address == '@') to.sun_path[0] = '\0';
-    const int line = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-    if (line < 0) return;
-    if (sendto(line, state, std::strlen(state), MSG_NOSIGNAL, reinterpret_cast<const sockaddr*>(&to),
-               static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length)) < 0)
-        std::fprintf(stderr, "handpiece-school: the service manager does not hear: %s\n", std::strerror(errno));
-    close(line);
 }
 
 void serve(const ServeOptions& asked) {

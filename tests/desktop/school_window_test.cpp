@@ -2,93 +2,35 @@
 // The window as a station of a school, with a real server beside it: work arrives by itself, is watched only where it
 // may be, and a server or a program that is dead or stuck holds nobody up.
 #include <QLabel>
-#include <QProcess>
 #include <csignal>
 
 #include "desktop/features/school/school_feature.h"
-#include "practice_support.h"
+#include "school_support.h"
 
 namespace handpiece::desktop {
 namespace {
 
 namespace fs = std::filesystem;
 
-class SchoolWindowTest : public PracticeTest {
+class SchoolWindowTest : public SchoolStation {
   protected:
-    void SetUp() override {
-        program_ = toPath(QCoreApplication::applicationDirPath()) / "handpiece-school";
-        if (!core::isThere(program_)) GTEST_SKIP() << "handpiece-school is not built";
-    }
-    void TearDown() override {
-        host_.reset();
-        stopServer();
-    }
-    /// What it prints; `input` is typed in.
-    QString school(const QStringList& arguments, const QByteArray& input = {}) {
-        QProcess process;
-        process.start(toQString(program_), arguments);
-        process.write(input);
-        process.closeWriteChannel();
-        EXPECT_TRUE(process.waitForFinished(120000));
-        EXPECT_EQ(process.exitCode(), 0) << process.readAllStandardError().toStdString();
-        return QString::fromUtf8(process.readAllStandardOutput()).trimmed();
-    }
-    void startServer() {
-        server_ = std::make_unique<QProcess>();
-        server_->start(toQString(program_),
-                       {"serve", "--data", data(), "--listen", "127.0.0.1:" + port_, "--workers", "0"});
-        ASSERT_TRUE(server_->waitForReadyRead(120000)) << server_->readAllStandardError().toStdString();
-        const QString line = QString::fromUtf8(server_->readLine());
-        address_ = line.left(line.indexOf(' '));
-        port_ = address_.mid(address_.lastIndexOf(':') + 1);
-    }
-    void stopServer() {
-        if (!server_) return;
-        server_->kill();
-        server_->waitForFinished();
-        server_.reset();
-    }
     /// The exercise is the school's, given to a class with one student, who sits here.
     void enrol(const fs::path& exercise) {
         const QString d = data();
-        school({"person", "--data", d, "s017", "--name", "Ida Ito"});
-        school({"person", "--data", d, "t01", "--name", "Dr. Sato", "--role", "teacher"});
-        school({"password", "--data", d, "t01"}, "a long enough one\n");
-        class_ = school({"class", "--data", d, "Operative 2"});
-        school({"join", "--data", d, class_, "s017"});
-        school({"join", "--data", d, class_, "t01", "--role", "teacher"});
-        const QString told = school({"exercise", "--data", d, toQString(exercise)});
-        const QString hash = told.section("exercise ", 1, 1).section(',', 0, 0);
+        const QString hash = makeClass(exercise);
         school({"assign", "--data", d, class_, hash, "--title", "The line"});
         const QString code = school({"code", "--data", d, "chair 1"});
         startServer();
         school({"enrol", address_, code, "--person", "s017", "--home", toQString(at("data"))});
     }
-    [[nodiscard]] QString data() const { return toQString(at("server")); }
     [[nodiscard]] SchoolFeature& feature() { return *window().findChild<SchoolFeature*>(); }
     [[nodiscard]] QString note() { return part<QLabel>("schoolNote")->text(); }
-    /// By a teacher's eyes, through a program of everybody's: what /classes/ID/live says.
-    QByteArray asTeacher(const QString& path) {
-        const QString jar = own_.filePath("jar");
-        QProcess curl;
-        if (!QFile::exists(jar)) {
-            curl.start("curl", {"-s", "-c", jar, "-d", "login=t01&password=a long enough one", address_ + "/login"});
-            EXPECT_TRUE(curl.waitForFinished(60000));
-        }
-        curl.start("curl", {"-s", "-b", jar, address_ + path});
-        EXPECT_TRUE(curl.waitForFinished(60000));
-        return curl.readAllStandardOutput();
-    }
     [[nodiscard]] std::size_t arrived() {
         return static_cast<std::size_t>(
             school({"results", "--data", data(), "s017"}).split('\n', Qt::SkipEmptyParts).size());
     }
     /// The program beside, as the window has started it.
     [[nodiscard]] pid_t beside() { return static_cast<pid_t>(feature().link().processId()); }
-
-    fs::path program_;
-    std::unique_ptr<QProcess> server_;
-    QString address_, port_ = QStringLiteral("0"), class_;
 };
 
 TEST_F(SchoolWindowTest, WorkIsWatchedAndArrivesByItself) {

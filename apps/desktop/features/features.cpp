@@ -18,6 +18,7 @@
 #include "desktop/features/radiograph/radiograph_feature.h"
 #include "desktop/features/replay/replay_feature.h"
 #include "desktop/features/scan/scan_feature.h"
+#include "desktop/features/school/exam_feature.h"
 #include "desktop/features/school/school_feature.h"
 #include "desktop/features/sound/sound_feature.h"
 #include "desktop/features/view/layout_feature.h"
@@ -52,6 +53,7 @@ void installFeatures(const FeatureContext& context) {
     add(new RadiographFeature(context));
     add(new FilesFeature(context));      // it opens whatever the others leave
     add(new LandmarksFeature(context));  // once it is known what may be left
+    add(new ExamFeature(context));       // nothing may, while an exam runs
     const auto refresh = [&window, &simulator] { window.refresh(simulator.permissions()); };
     const auto showTick = [features, refresh] {
         for (Feature* feature : features)

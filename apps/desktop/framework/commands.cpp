@@ -50,9 +50,10 @@ void Commands::refresh(const exercise::Permissions& permissions) {
         const auto& operation = rule->operation;
         action->setEnabled((!rule->can || rule->can()) && (!operation || permissions.allows(*operation)));
         if (operation)
-            action->setToolTip(permissions.locks(*operation)
-                                   ? words(QT_TRANSLATE_NOOP("Commands", "Locked by this exercise."))
-                                   : tipOf(*action));
+            action->setToolTip(!permissions.locks(*operation) ? tipOf(*action)
+                               : permissions.isExam()
+                                   ? words(QT_TRANSLATE_NOOP("Commands", "Not in this exam."))
+                                   : words(QT_TRANSLATE_NOOP("Commands", "Locked by this exercise.")));
     }
 }
 

@@ -48,6 +48,7 @@ constexpr std::array<const char*, exercise::kOperationCount> kOperationWords{
     QT_TRANSLATE_NOOP("Exercise", "hints"),
     QT_TRANSLATE_NOOP("Exercise", "removed volumes"),
     QT_TRANSLATE_NOOP("Exercise", "report"),
+    QT_TRANSLATE_NOOP("Exercise", "other work"),
 };
 
 }  // namespace

@@ -181,7 +181,7 @@ void MainWindow::closeEvent(QCloseEvent* event) {
     }
     event->ignore();
     view_->escape();
-    whenMayLeave([this] {
+    whenMayClose([this] {
         closing_ = true;
         rememberAll();
         closeWork();

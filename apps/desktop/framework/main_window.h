@@ -55,6 +55,10 @@ class MainWindow : public QMainWindow {
     std::vector<std::function<bool(const QString& path)>> openers;
     /// Runs `then` once unsaved work is out of the way, unless that was cancelled.
     std::function<void(std::function<void()> then)> whenMayLeave = [](const std::function<void()>& then) { then(); };
+    /// Likewise before the window closes.
+    std::function<void(std::function<void()> then)> whenMayClose = [this](std::function<void()> then) {
+        whenMayLeave(std::move(then));
+    };
     /// The window closes for good.
     std::function<void()> closeWork = [] {};
 

@@ -100,6 +100,8 @@ constexpr Row kRows[] = {
     {Notice::burLocked, "bur-locked", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "This exercise does not allow the bur %1.")},
     {Notice::helpLocked, "help-locked", Kind::hint, QT_TRANSLATE_NOOP("Notices", "Not in this exercise: %1.")},
+    {Notice::examRuns, "exam-runs", Kind::hint,
+     QT_TRANSLATE_NOOP("Notices", "An exam runs: no other work can be opened or kept until it is handed over.")},
     {Notice::handedIn, "handed-in", Kind::hint,
      QT_TRANSLATE_NOOP("Notices", "Handed in: %1, with its tooth. Recordings in it: %2 (%3 MB).")},
     {Notice::handedInPart, "handed-in-part", Kind::warning,

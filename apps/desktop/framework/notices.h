@@ -47,6 +47,7 @@ enum class Notice {
     burMissing,
     burLocked,
     helpLocked,
+    examRuns,
     handedIn,
     handedInPart,
     otherEngine,

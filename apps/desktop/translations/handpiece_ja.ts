@@ -627,6 +627,18 @@
         <source>What is to go and what must stay, as glass over the tooth</source>
         <translation>削る部分と残すべき部分を、歯の上に透明なガラスとして表示します</translation>
     </message>
+    <message>
+        <source>Begin an exam...</source>
+        <translation>試験を始める...</translation>
+    </message>
+    <message>
+        <source>An exam of your school, with an invigilator beside you, by the code on your slip</source>
+        <translation>学校の試験を、監督者の立会いのもと、受験票のコードで始めます</translation>
+    </message>
+    <message>
+        <source>Not in this exam.</source>
+        <translation>この試験では使えません。</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -868,6 +880,10 @@
     <message>
         <source>report</source>
         <translation>レポート</translation>
+    </message>
+    <message>
+        <source>other work</source>
+        <translation>ほかの作業</translation>
     </message>
 </context>
 <context>
@@ -1530,6 +1546,10 @@
     <message>
         <source>The %1 minutes of this exercise are over: the pedal is dead. Finish to see the result.</source>
         <translation>この課題の制限時間 %1 分が過ぎたため、ペダルは効きません。「完了」を押すと結果が出ます。</translation>
+    </message>
+    <message>
+        <source>An exam runs: no other work can be opened or kept until it is handed over.</source>
+        <translation>試験中です。提出するまで、ほかの作業を開いたり保存したりできません。</translation>
     </message>
 </context>
 <context>
@@ -2931,6 +2951,158 @@
     <message>
         <source>It comes along all the same. If it is of another exercise on this tooth, remove it.</source>
         <translation>それでも付属します。同じ歯の別の課題の記録であれば、取り除いてください。</translation>
+    </message>
+    <message>
+        <source>The service that holds this station&apos;s exams does not answer.</source>
+        <translation>この端末の試験サービスが応答しません。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: it is started on this computer by its own user.</source>
+        <translation>監督者を呼んでください。このコンピューターで、専用のユーザーが起動します。</translation>
+    </message>
+    <message>
+        <source>The school&apos;s part of the program is not installed, or has ended (handpiece-school).</source>
+        <translation>学校用のプログラム (handpiece-school) がインストールされていないか、終了しました。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator.</source>
+        <translation>監督者を呼んでください。</translation>
+    </message>
+    <message>
+        <source>Another window of this program holds unsaved work.</source>
+        <translation>このプログラムの別のウィンドウに、保存していない作業があります。</translation>
+    </message>
+    <message>
+        <source>Save or close it, then begin the exam.</source>
+        <translation>保存するか閉じてから、試験を始めてください。</translation>
+    </message>
+    <message>
+        <source>This exam begins %1; at this station it is %2.</source>
+        <translation>この試験の開始は %1 です。この端末の時刻は %2 です。</translation>
+    </message>
+    <message>
+        <source>Wait, or let this station&apos;s clock be put right.</source>
+        <translation>待つか、端末の時計を直してもらってください。</translation>
+    </message>
+    <message>
+        <source>This exam could be begun until %1; at this station it is %2.</source>
+        <translation>この試験を始められたのは %1 までです。この端末の時刻は %2 です。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: a teacher can give it a new time, or this station&apos;s clock is wrong.</source>
+        <translation>監督者を呼んでください。教員が時間を改めるか、端末の時計を直します。</translation>
+    </message>
+    <message>
+        <source>No exam at this station knows this candidate&apos;s code.</source>
+        <translation>この端末の試験に、この受験者コードはありません。</translation>
+    </message>
+    <message>
+        <source>Type it as it stands on the slip. Who came later needs the exam to be fetched again.</source>
+        <translation>受験票のとおりに入力してください。後から加わった人は、試験を取得し直す必要があります。</translation>
+    </message>
+    <message>
+        <source>Nobody who may confirm a candidate&apos;s identity at this exam has these codes.</source>
+        <translation>この試験で本人を確認できる監督者のコードではありません。</translation>
+    </message>
+    <message>
+        <source>An invigilator of this exam types their own code and their confirmation code.</source>
+        <translation>この試験の監督者が、自分のコードと確認コードを入力してください。</translation>
+    </message>
+    <message>
+        <source>Too many wrong confirmation codes.</source>
+        <translation>確認コードの誤りが多すぎます。</translation>
+    </message>
+    <message>
+        <source>Wait %1 s, then try again.</source>
+        <translation>%1 秒待ってから、もう一度入力してください。</translation>
+    </message>
+    <message>
+        <source>Somebody is at an exam at this station.</source>
+        <translation>この端末では、ほかの人が受験中です。</translation>
+    </message>
+    <message>
+        <source>Hand that work over first, or let an invigilator give it up.</source>
+        <translation>先にその作業を提出するか、監督者に中止してもらってください。</translation>
+    </message>
+    <message>
+        <source>Nobody is at this exam at this station.</source>
+        <translation>この端末では、この試験は行われていません。</translation>
+    </message>
+    <message>
+        <source>This exam is not as the school signed it.</source>
+        <translation>この試験は、学校が署名した内容と異なります。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: it has to be fetched again from the school&apos;s server.</source>
+        <translation>監督者を呼んでください。学校のサーバーから取得し直す必要があります。</translation>
+    </message>
+    <message>
+        <source>This exam was signed by another than this station&apos;s school.</source>
+        <translation>この試験は、この端末の学校以外が署名しています。</translation>
+    </message>
+    <message>
+        <source>This exam names somebody twice: %2.</source>
+        <translation>この試験には同じ人が 2 回あります：%2。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: a teacher mends the exam and signs it again.</source>
+        <translation>監督者を呼んでください。教員が試験を直し、署名し直します。</translation>
+    </message>
+    <message>
+        <source>What the station says of the exam cannot be read.</source>
+        <translation>端末の試験の情報を読み取れません。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: it has to be fetched again, by programs of one version.</source>
+        <translation>監督者を呼んでください。同じ版のプログラムで取得し直す必要があります。</translation>
+    </message>
+    <message>
+        <source>This exam&apos;s rubric is newer than this program.</source>
+        <translation>この試験のルーブリックは、このプログラムより新しいものです。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: this station needs the newer program.</source>
+        <translation>監督者を呼んでください。この端末には新しいプログラムが必要です。</translation>
+    </message>
+    <message>
+        <source>This exam was made for another version of the simulation.</source>
+        <translation>この試験は、別の版のシミュレーション用に作られています。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: this station needs the program that the school&apos;s server has.</source>
+        <translation>監督者を呼んでください。学校のサーバーと同じプログラムが必要です。</translation>
+    </message>
+    <message>
+        <source>This exam was made by a newer program.</source>
+        <translation>この試験は新しいプログラムで作られています。</translation>
+    </message>
+    <message>
+        <source>An exam of a newer version is here already.</source>
+        <translation>新しい版の試験がすでにあります。</translation>
+    </message>
+    <message>
+        <source>Nothing is to be done: the newer one holds.</source>
+        <translation>何もする必要はありません。新しい方が有効です。</translation>
+    </message>
+    <message>
+        <source>The exam&apos;s exercise is not the one that was signed.</source>
+        <translation>試験の課題が、署名されたものと異なります。</translation>
+    </message>
+    <message>
+        <source>What this station noted of exams was changed.</source>
+        <translation>この端末の試験の記録が変更されています。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator, and tell the school&apos;s administrator.</source>
+        <translation>監督者を呼び、学校の管理者に知らせてください。</translation>
+    </message>
+    <message>
+        <source>Another service holds the exams of this station.</source>
+        <translation>この端末の試験は、別のサービスが扱っています。</translation>
+    </message>
+    <message>
+        <source>Call the invigilator: one is enough.</source>
+        <translation>監督者を呼んでください。サービスは 1 つで足ります。</translation>
     </message>
 </context>
 <context>
@@ -6411,6 +6583,10 @@ lingual: %4</source>
     <message>
         <source>Scoring your work</source>
         <translation>作業を採点しています</translation>
+    </message>
+    <message>
+        <source>Preparing the exam</source>
+        <translation>試験を準備中</translation>
     </message>
 </context>
 <context>
@@ -10667,6 +10843,322 @@ lingual: %4</source>
     <message>
         <source>The school&apos;s part of the program has ended; it begins again with the next tooth.</source>
         <translation>学校用プログラムが終了しました。次に歯を開くと再び始まります。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExamBar</name>
+    <message>
+        <source>Exam</source>
+        <translation>試験</translation>
+    </message>
+    <message>
+        <source>Title of the exam</source>
+        <translation>試験の名前</translation>
+    </message>
+    <message>
+        <source>What you should know</source>
+        <translation>お知らせ</translation>
+    </message>
+    <message>
+        <source>Time left</source>
+        <translation>残り時間</translation>
+    </message>
+    <message>
+        <source>Pause</source>
+        <translation>休憩</translation>
+    </message>
+    <message>
+        <source>The picture is covered and the pedal is dead until you go on. The minutes for pauses are in the time that is left, which runs on.</source>
+        <translation>再開するまで画面が覆われ、ペダルは効きません。残り時間には休憩の分が含まれており、休憩中も進みます。</translation>
+    </message>
+    <message>
+        <source>Open again</source>
+        <translation>もう一度開く</translation>
+    </message>
+    <message>
+        <source>The exam&apos;s tooth is not open: bring it back</source>
+        <translation>試験の歯が開いていません。もう一度開きます</translation>
+    </message>
+    <message>
+        <source>Hand over...</source>
+        <translation>提出...</translation>
+    </message>
+    <message>
+        <source>Hand over</source>
+        <translation>提出</translation>
+    </message>
+    <message>
+        <source>Your work is done: it is handed over, and the exam ends</source>
+        <translation>作業を終えて提出します。試験は終わります</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>再開</translation>
+    </message>
+    <message>
+        <source>over by %1</source>
+        <translation>%1 超過</translation>
+    </message>
+    <message>
+        <source>The time is over</source>
+        <translation>時間が過ぎました</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExamDialog</name>
+    <message>
+        <source>%1 min</source>
+        <translation>%1 分</translation>
+    </message>
+    <message>
+        <source>%1 %2 s</source>
+        <translation>%1 %2 秒</translation>
+    </message>
+    <message>
+        <source>%1 % more time</source>
+        <translation>時間延長 %1 %</translation>
+    </message>
+    <message>
+        <source>%1 min for pauses</source>
+        <translation>休憩 %1 分</translation>
+    </message>
+    <message>
+        <source>%1 and %2 are in it.</source>
+        <translation>%1 と%2を含みます。</translation>
+    </message>
+    <message>
+        <source>%1 is in it.</source>
+        <translation>%1 を含みます。</translation>
+    </message>
+    <message>
+        <source>%1 are in it.</source>
+        <translation>%1を含みます。</translation>
+    </message>
+    <message>
+        <source>Begin an exam</source>
+        <translation>試験を始める</translation>
+    </message>
+    <message>
+        <source>An invigilator is beside you. Type the code on your slip; nothing begins before the invigilator has confirmed who you are.</source>
+        <translation>監督者が隣にいることを確かめ、受験票のコードを入力してください。監督者が本人を確認するまで、試験は始まりません。</translation>
+    </message>
+    <message>
+        <source>Candidate&apos;s code</source>
+        <translation>受験者コード</translation>
+    </message>
+    <message>
+        <source>Title of the exam</source>
+        <translation>試験の名前</translation>
+    </message>
+    <message>
+        <source>What is asked</source>
+        <translation>課題</translation>
+    </message>
+    <message>
+        <source>How long it takes</source>
+        <translation>試験時間</translation>
+    </message>
+    <message>
+        <source>What is locked</source>
+        <translation>使えない機能</translation>
+    </message>
+    <message>
+        <source>Begun before</source>
+        <translation>以前の開始</translation>
+    </message>
+    <message>
+        <source>For the invigilator</source>
+        <translation>監督者へ</translation>
+    </message>
+    <message>
+        <source>Check who sits here: the slip with this code must be theirs. With your two codes you confirm it, and the time begins to run.</source>
+        <translation>座っている人が、このコードの受験票の本人であることを確かめてください。監督者の 2 つのコードで確認すると、時間が進み始めます。</translation>
+    </message>
+    <message>
+        <source>Invigilator&apos;s code</source>
+        <translation>監督者コード</translation>
+    </message>
+    <message>
+        <source>Confirmation code</source>
+        <translation>確認コード</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>問題</translation>
+    </message>
+    <message>
+        <source>Back</source>
+        <translation>戻る</translation>
+    </message>
+    <message>
+        <source>Back to the candidate&apos;s code</source>
+        <translation>受験者コードに戻ります</translation>
+    </message>
+    <message>
+        <source>Go on</source>
+        <translation>次へ</translation>
+    </message>
+    <message>
+        <source>Cancel</source>
+        <translation>キャンセル</translation>
+    </message>
+    <message>
+        <source>No exam is begun</source>
+        <translation>試験を始めません</translation>
+    </message>
+    <message>
+        <source>Begin the exam</source>
+        <translation>試験を開始</translation>
+    </message>
+    <message>
+        <source>Shows which exam it is</source>
+        <translation>どの試験かを表示します</translation>
+    </message>
+    <message>
+        <source>The time begins to run</source>
+        <translation>時間が進み始めます</translation>
+    </message>
+    <message>
+        <source>Time: %1.</source>
+        <translation>試験時間：%1。</translation>
+    </message>
+    <message>
+        <source>No help is locked.</source>
+        <translation>使えない機能はありません。</translation>
+    </message>
+    <message>
+        <source>Locked: %1</source>
+        <translation>使えない機能：%1</translation>
+    </message>
+    <message>
+        <source>With this code an exam was begun here before: %1 times. This shows.</source>
+        <translation>このコードの試験は、ここで以前に %1 回始められています。このことは記録に残ります。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ExamFeature</name>
+    <message>
+        <source>Pause</source>
+        <translation>休憩</translation>
+    </message>
+    <message>
+        <source>An exam runs.</source>
+        <translation>試験中です。</translation>
+    </message>
+    <message>
+        <source>Its time runs on when the window is closed. Start the program again to go on with it.</source>
+        <translation>ウィンドウを閉じても時間は進みます。続けるには、プログラムをもう一度起動してください。</translation>
+    </message>
+    <message>
+        <source>Close all the same</source>
+        <translation>それでも閉じる</translation>
+    </message>
+    <message>
+        <source>Stay</source>
+        <translation>閉じない</translation>
+    </message>
+    <message>
+        <source>Save the receipt</source>
+        <translation>受領証を保存</translation>
+    </message>
+    <message>
+        <source>Text (*.txt)</source>
+        <translation>テキスト (*.txt)</translation>
+    </message>
+    <message>
+        <source>The station&apos;s exam service does not answer. Go on working, and call the invigilator.</source>
+        <translation>この端末の試験サービスが応答しません。作業を続け、監督者を呼んでください。</translation>
+    </message>
+    <message>
+        <source>Your work is not recorded. Call the invigilator.</source>
+        <translation>作業が記録されていません。監督者を呼んでください。</translation>
+    </message>
+    <message>
+        <source>Exam</source>
+        <translation>試験</translation>
+    </message>
+    <message>
+        <source>Hand your work over?</source>
+        <translation>作業を提出しますか。</translation>
+    </message>
+    <message>
+        <source>This ends the exam. Nothing can be changed afterwards.</source>
+        <translation>試験はこれで終わります。提出した後は何も変更できません。</translation>
+    </message>
+    <message>
+        <source>Hand over</source>
+        <translation>提出</translation>
+    </message>
+    <message>
+        <source>Go on working</source>
+        <translation>作業を続ける</translation>
+    </message>
+    <message>
+        <source>The time of this exam is over.</source>
+        <translation>試験時間が終わりました。</translation>
+    </message>
+    <message>
+        <source>Hand your work over now. You can still go on, but how late it was handed over is shown to the teacher who decides about the result.</source>
+        <translation>いま提出してください。作業は続けられますが、どれだけ遅れて提出したかは、結果を判定する教員に示されます。</translation>
+    </message>
+    <message>
+        <source>Not yet</source>
+        <translation>まだ提出しない</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ReceiptDialog</name>
+    <message>
+        <source>Receipt</source>
+        <translation>受領証</translation>
+    </message>
+    <message>
+        <source>What became of the exam</source>
+        <translation>試験の状態</translation>
+    </message>
+    <message>
+        <source>What happens next</source>
+        <translation>今後の流れ</translation>
+    </message>
+    <message>
+        <source>The receipt, as it is signed</source>
+        <translation>署名された受領証</translation>
+    </message>
+    <message>
+        <source>Save the receipt...</source>
+        <translation>受領証を保存...</translation>
+    </message>
+    <message>
+        <source>Save the receipt</source>
+        <translation>受領証を保存</translation>
+    </message>
+    <message>
+        <source>Keep it: with it you can show what you handed over and when</source>
+        <translation>保管してください。いつ何を提出したかを示せます</translation>
+    </message>
+    <message>
+        <source>Close</source>
+        <translation>閉じる</translation>
+    </message>
+    <message>
+        <source>The exam was given up: %1</source>
+        <translation>試験は中止されました：%1</translation>
+    </message>
+    <message>
+        <source>Your work has been handed over: %1</source>
+        <translation>提出しました：%1</translation>
+    </message>
+    <message>
+        <source>At %1 an invigilator ended it without work.</source>
+        <translation>%1 に、監督者が作業なしで終了しました。</translation>
+    </message>
+    <message>
+        <source>At %1. The school&apos;s receipt is not here yet: below stands what this station signed. Your work goes to the school by itself.</source>
+        <translation>%1 提出。学校の受領証はまだ届いていません。下は、この端末が署名した控えです。作業は自動で学校に送られます。</translation>
+    </message>
+    <message>
+        <source>At %1. The school has your work; below stands its receipt. A teacher decides about the result.</source>
+        <translation>%1 提出。学校に届きました。下が学校の受領証です。結果は教員が判定します。</translation>
     </message>
 </context>
 </TS>

@@ -91,6 +91,15 @@ void lockHelps(tasks::Task& task) {
     task.hasLiveBar = false;
 }
 
+/// In an exam the station's service says what is locked, and not the exercise.
+void takeExam(tasks::Task& task, const LoadRequest& request) {
+    if (request.exam.empty()) return;
+    if (!task.toothCase.exercise) task.toothCase.exercise.emplace();
+    task.toothCase.exercise->lockedHelps = request.examLocks;
+    if (std::find(request.examLocks.begin(), request.examLocks.end(), "score") != request.examLocks.end())
+        task.hasLiveBar = false;
+}
+
 /// Where the case of an exercise lies, to be named by an attempt.
 fs::path casePlace(const fs::path& task) {
     if (!core::isFolder(task)) return task;
@@ -215,7 +224,10 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         recovered->toothCase.exercise = request.exercise;
         if (!request.recovered.taskPath.empty()) {
             try {
-                loaded.document.task = std::make_shared<const tasks::Task>(tasks::readTask(request.recovered.taskPath));
+                auto task = std::make_shared<tasks::Task>(tasks::readTask(request.recovered.taskPath));
+                takeExam(*task, request);
+                if (!request.exam.empty()) recovered->toothCase.exercise = task->toothCase.exercise;
+                loaded.document.task = std::move(task);
             } catch (const core::Error&) {  // gone by now: the tooth comes back all the same
                 loaded.document.taskPath.clear();
             }
@@ -234,6 +246,8 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     } else if (!request.task.empty()) {
         auto task = std::make_shared<tasks::Task>(tasks::readTask(request.task));
         if (request.unaided) lockHelps(*task);
+        takeExam(*task, request);
+        loaded.document.exam = request.exam;
         const fs::path whole = core::wholePath(request.task);
         loaded.document.caseFile = casePlace(whole);
         loaded.document.taskPath = whole;

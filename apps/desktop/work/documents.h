@@ -70,6 +70,7 @@ struct Document {
     std::filesystem::path taskPath{};
     std::int64_t began = 0;  ///< work on it [ms since 1970]; 0: not known
     double beforeS = 0.0;    ///< worked before the recording under way began
+    std::string exam{};      ///< sitting of the exam that it is; empty: it is none
 };
 
 /// What is being done for a tooth that opens, for people.
@@ -90,8 +91,10 @@ struct LoadRequest {
     std::filesystem::path path;  ///< case, attempt or mesh; a session to be recovered from
     int fdi = 0;                 ///< the tooth of a case to work on; 0: its own
     std::optional<Starter> starter;
-    std::filesystem::path task;  ///< an exercise, in the place of `path`
-    bool unaided = false;        ///< with `task`: kUnaidedLocks are locked as well
+    std::filesystem::path task;          ///< an exercise, in the place of `path`
+    bool unaided = false;                ///< with `task`: kUnaidedLocks are locked as well
+    std::string exam;                    ///< with `task`, or to be recovered: the sitting ...
+    std::vector<std::string> examLocks;  ///< ... and all helps that are locked in it
     bool recover = false;
     Document recovered;  ///< with `recover`: what its marker says
     std::optional<cases::Exercise> exercise;

@@ -50,6 +50,7 @@ std::optional<SessionNote> readNote(const fs::path& session) {
     note.task = o[QStringLiteral("task")].toString();
     note.beforeS = o[QStringLiteral("before_s")].toDouble();
     note.began = o[QStringLiteral("began")].toInteger();
+    note.exam = o[QStringLiteral("exam")].toString();
     for (const QJsonValue& name : o[QStringLiteral("recordings")].toArray())
         note.recordings << name.toString();
     return note;
@@ -71,6 +72,7 @@ void writeNote(const fs::path& session, const SessionNote& note) {
     if (!note.task.isEmpty()) o[QStringLiteral("task")] = note.task;
     if (note.beforeS > 0.0) o[QStringLiteral("before_s")] = note.beforeS;
     if (note.began != 0) o[QStringLiteral("began")] = note.began;
+    if (!note.exam.isEmpty()) o[QStringLiteral("exam")] = note.exam;
     if (!note.exercise.isEmpty()) o[QStringLiteral("exercise")] = note.exercise;
     if (!note.recordings.isEmpty()) o[QStringLiteral("recordings")] = QJsonArray::fromStringList(note.recordings);
     core::writeFile(beside(session, ".json"), QJsonDocument(o).toJson().toStdString(),
@@ -129,14 +131,25 @@ void SessionShelf::leave() {
     lock_.reset();
 }
 
-std::vector<Crashed> SessionShelf::crashed() const {
+std::vector<Crashed> SessionShelf::left() const {
     std::vector<Crashed> found;
     for (const fs::path& session : sessionsIn(folder_)) {
         if (session == current_) continue;
         const auto note = readNote(session);
-        if (!note || isAlive(session)) continue;
-        if (note->unsaved) found.push_back({session, *note});
+        if (note && !isAlive(session)) found.push_back({session, *note});
     }
+    return found;
+}
+
+std::vector<Crashed> SessionShelf::crashed() const {
+    std::vector<Crashed> found = left();
+    std::erase_if(found, [](const Crashed& one) { return !one.note.unsaved || !one.note.exam.isEmpty(); });
+    return found;
+}
+
+std::vector<Crashed> SessionShelf::ofExams() const {
+    std::vector<Crashed> found = left();
+    std::erase_if(found, [](const Crashed& one) { return one.note.exam.isEmpty(); });
     return found;
 }
 
@@ -162,7 +175,7 @@ std::size_t SessionShelf::tidy() {
         const std::uint64_t size = fs::file_size(session, error);
         const auto note = readNote(session);
         // A marker that says "saved" was left by a crash with nothing lost.
-        const bool holds = note && (note->unsaved || isAlive(session));
+        const bool holds = note && (note->unsaved || !note->exam.isEmpty() || isAlive(session));
         if (!holds && (kept >= limits_.sessions || bytes + (error ? 0 : size) > limits_.bytes)) {
             fs::remove(session, error);
             if (!error) ++removed;

@@ -29,6 +29,7 @@ struct SessionNote {
     QString task = {};                    ///< the exercise's file or folder; may be empty
     double beforeS = 0.0;                 ///< worked before this recording began
     qint64 began = 0;                     ///< work on it [ms since 1970]; 0: not known
+    QString exam = {};                    ///< sitting of the exam that it is; empty: it is none
 };
 
 /// A recording whose program ended without a word.
@@ -63,8 +64,11 @@ class SessionShelf {
     [[nodiscard]] const std::filesystem::path& current() const noexcept { return current_; }
     [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
-    /// Recordings with unsaved work whose program is gone, the newest first. Empty ones count as none.
+    /// Recordings with unsaved work whose program is gone, the newest first. Empty ones count as none, and those of an
+    /// exam are not among them.
     [[nodiscard]] std::vector<Crashed> crashed() const;
+    /// Recordings of exams that were not settled and that no program has under way, the newest first.
+    [[nodiscard]] std::vector<Crashed> ofExams() const;
     /// Its work is saved elsewhere by now, or given up: it becomes a recording like any other.
     void settle(const std::filesystem::path& session);
     /// Deletes the oldest recordings beyond the limits, never one with a marker. Returns how many.
@@ -72,6 +76,8 @@ class SessionShelf {
 
   private:
     void take(const std::filesystem::path& session);
+    /// With a marker, and no program.
+    [[nodiscard]] std::vector<Crashed> left() const;
 
     std::filesystem::path folder_;
     Limits limits_;

@@ -76,6 +76,7 @@ SessionNote Simulator::noteNow() const {
     note.task = toQString(document_.taskPath);
     note.beforeS = document_.beforeS;
     note.began = document_.began;
+    note.exam = QString::fromStdString(document_.exam);
     return note;
 }
 
@@ -100,8 +101,10 @@ void Simulator::sit(LoadedTooth loaded) {
     unsaved_ = false;
     isTimeTold_ = false;
     const auto& task = document_.task;
-    isTimeOver_->store(task && task->minutes && task->isTimeHard && loaded.elapsedS >= 60.0 * *task->minutes,
+    // An exam has a time of its own.
+    isTimeOver_->store(!exam_ && task && task->minutes && task->isTimeHard && loaded.elapsedS >= 60.0 * *task->minutes,
                        std::memory_order_relaxed);
+    isPaused_->store(false, std::memory_order_relaxed);
 
     simulation::LiveSessionSettings liveSession;
     liveSession.code = loaded.code.empty() ? code_.toStdString() : loaded.code;
@@ -112,7 +115,7 @@ void Simulator::sit(LoadedTooth loaded) {
     const cases::Exercise* exercise = toothCase_->exercise ? &*toothCase_->exercise : nullptr;
     liveSession.lowerButtonUndoes =
         exercise::permissionsOf(exercise, exercise::WorkMode::work).allows(exercise::Operation::undo);
-    if (options_.record) {
+    if (options_.record || exam_) {
         try {
             if (loaded.recording.empty()) {
                 document_.beforeS = loaded.elapsedS;
@@ -226,7 +229,7 @@ void Simulator::stopLiveSession(bool keepMarker) {
     pollFeed_.reset();
     mailbox_.reset();
     usedHand_.reset();
-    if (keepMarker) {
+    if (keepMarker || !document_.exam.empty()) {
         shelf_.leave();
     } else {
         shelf_.end();
@@ -238,7 +241,8 @@ void Simulator::stopAll(bool keepsReview) {
     timer_.stop();
     replay_.reset();
     // A tooth that waits behind a replay: what nobody saved of it is offered again at the next start.
-    if (leftFor_ && !leftFor_->file.note.unsaved) shelf_.settle(leftFor_->file.session);
+    if (leftFor_ && !leftFor_->file.note.unsaved && leftFor_->file.note.exam.isEmpty())
+        shelf_.settle(leftFor_->file.session);
     leftFor_.reset();
     if (!keepsReview) reviewed_.reset();
     stopLiveSession(false);

@@ -126,6 +126,33 @@ class Simulator : public QObject {
     /// Closes the recording and judges it, with those of the same attempt before it, beside everything else; its replay
     /// lies open at its end then, and finished() tells the rest. Cancelled or refused: the tooth comes back as it was.
     void finish();
+    // An exam: while it runs nothing else can be opened, and its recording stays marked until it ends. `elsewhere` of
+    // permissions() says so.
+
+    struct Exam {
+        std::string sitting;              ///< as the station's service calls it
+        std::vector<std::string> locked;  ///< all helps that its candidate does not have
+        std::filesystem::path exercise;
+    };
+    /// Opens its tooth, or goes on with the work at it that a program left that ended: whatever goes on here is given
+    /// up.
+    void beginExam(const Exam& exam);
+    [[nodiscard]] const std::optional<Exam>& exam() const noexcept { return exam_; }
+    /// As beginExam() again, where nothing came of it.
+    void openExam();
+    /// Closes its recording: all of them, in the order of the work. The tooth waits for goOnWithExam() or endExam().
+    [[nodiscard]] std::vector<std::filesystem::path> closeExam();
+    /// It could not be handed over: the tooth comes back.
+    void goOnWithExam();
+    /// It was handed over or given up: its tooth goes.
+    void endExam();
+    /// Exams of which recordings were left, by their sittings, but for the one that runs.
+    [[nodiscard]] std::vector<std::string> leftExams() const;
+    /// They become recordings like any other.
+    void forgetExam(const std::string& sitting);
+    /// The pedal is dead.
+    void pause(bool isPaused) { isPaused_->store(isPaused, std::memory_order_relaxed); }
+
     void recover(const Crashed& crashed, std::function<void()> then = {});
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
@@ -290,6 +317,7 @@ class Simulator : public QObject {
     [[nodiscard]] SessionNote noteNow() const;
     [[nodiscard]] LoadRequest request() const;
     [[nodiscard]] LoadRequest requestAgain() const;
+    void bringBack(const Crashed& crashed, std::function<void()> then = {});
     [[nodiscard]] bool mayWork();
     [[nodiscard]] bool mayTakeBack();
     void tellDrill();
@@ -318,6 +346,9 @@ class Simulator : public QObject {
     bool hull_ = false, isTimeTold_ = false;
     /// The tick reads it.
     std::shared_ptr<std::atomic<bool>> isTimeOver_ = std::make_shared<std::atomic<bool>>(false);
+    std::shared_ptr<std::atomic<bool>> isPaused_ = std::make_shared<std::atomic<bool>>(false);
+    std::optional<Exam> exam_;
+    bool isExamLost_ = false;  ///< its recording could not be brought back
     int voxelUm_ = 50;
     messages::HapticSample sample_;
     simulation::LiveSessionStatus status_;

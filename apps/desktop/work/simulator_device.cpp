@@ -21,19 +21,20 @@ core::Box boundsOf(const cases::Case& toothCase) {
 
 namespace {
 
-/// Its pedal is up from the moment at which the exercise's time is over.
+/// Its pedal is up from the moment at which the exercise's time is over, and in a pause.
 class EndingDevice final : public device::PassingDevice {
   public:
-    EndingDevice(std::unique_ptr<device::Device> inner, std::shared_ptr<const std::atomic<bool>> isOver)
-        : PassingDevice(std::move(inner)), isOver_(std::move(isOver)) {}
+    using Flag = std::shared_ptr<const std::atomic<bool>>;
+    EndingDevice(std::unique_ptr<device::Device> inner, Flag isOver, Flag isPaused)
+        : PassingDevice(std::move(inner)), isOver_(std::move(isOver)), isPaused_(std::move(isPaused)) {}
     device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override {
         device::Reading reading = PassingDevice::read(periodS);
-        if (isOver_->load(std::memory_order_relaxed)) reading.pedal = 0.0;
+        if (isOver_->load(std::memory_order_relaxed) || isPaused_->load(std::memory_order_relaxed)) reading.pedal = 0.0;
         return reading;
     }
 
   private:
-    std::shared_ptr<const std::atomic<bool>> isOver_;
+    Flag isOver_, isPaused_;
 };
 
 }  // namespace
@@ -46,13 +47,13 @@ std::unique_ptr<device::Device> Simulator::takeHandpiece() {
     if (usedHand_) {
         mailbox_.reset();
         usedHand_->placeFor(tooth);
-        return std::make_unique<EndingDevice>(std::make_unique<LentDevice>(usedHand_), isTimeOver_);
+        return std::make_unique<EndingDevice>(std::make_unique<LentDevice>(usedHand_), isTimeOver_, isPaused_);
     }
     mailbox_ = std::make_shared<device::PointerMailbox>();
     return std::make_unique<EndingDevice>(
         safety::withPedal(std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, mailbox_, startPose_),
                           foot_.value()),
-        isTimeOver_);
+        isTimeOver_, isPaused_);
 }
 
 /// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.

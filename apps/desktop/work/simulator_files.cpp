@@ -45,7 +45,7 @@ void Simulator::start(const QString& title, Job::Work work, std::function<void()
 }
 
 void Simulator::cancelJob() {
-    if (job_) job_->cancel();
+    if (job_ && !exam_) job_->cancel();
 }
 
 void Simulator::whenFree(std::function<void()> what) {
@@ -144,12 +144,14 @@ QString Simulator::stepText(LoadStep step) {
 }
 
 void Simulator::openStarter(const Starter& starter) {
+    if (!may(exercise::Operation::elsewhere)) return;
     LoadRequest wanted = request();
     wanted.starter = starter;
     load(std::move(wanted), tr("Preparing the tooth"));
 }
 
 void Simulator::open(const fs::path& path, int fdi) {
+    if (!may(exercise::Operation::elsewhere)) return;
     FileKind kind = FileKind::unknown;
     try {
         kind = fileKindOf(path);
@@ -259,7 +261,7 @@ void Simulator::replayThis() {
         for (std::size_t i = all.size(); i-- > 0;)
             if (all[i].packed) return watchRecording(i);
     }
-    if (job_ || mode_ != Mode::liveSession) return;
+    if (job_ || mode_ != Mode::liveSession || !may(exercise::Operation::elsewhere)) return;
     if (!isRecorded()) {
         emit failed(problemById(QStringLiteral("no-recording")));
         return;
@@ -293,7 +295,7 @@ void Simulator::setCode(const QString& asked) {
     if (code == code_) return;
     code_ = code;
     sessionCode_ = code.toStdString();
-    if (job_ || mode_ != Mode::liveSession) return;
+    if (job_ || mode_ != Mode::liveSession || exam_) return;
     if (!status_.cut && status_.strokes == 0 && document_.attemptFile.empty()) {
         load(requestAgain(), tr("Preparing the tooth"));
     } else {
@@ -302,6 +304,10 @@ void Simulator::setCode(const QString& asked) {
 }
 
 void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
+    if (may(exercise::Operation::elsewhere)) bringBack(crashed, std::move(then));
+}
+
+void Simulator::bringBack(const Crashed& crashed, std::function<void()> then) {
     LoadRequest wanted = request();
     wanted.path = crashed.session;
     wanted.recover = true;
@@ -320,6 +326,10 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
         wanted.recovered.recordings.push_back({name.toStdString(), isPacked ? saved : place, isPacked});
     }
     wanted.recovered.recordings.push_back({crashed.session.filename().string(), crashed.session, false});
+    if (exam_) {
+        wanted.exam = exam_->sitting, wanted.examLocks = exam_->locked;
+        wanted.recovered.exam = exam_->sitting, wanted.recovered.taskPath = exam_->exercise;
+    }
     try {
         if (!crashed.note.exercise.isEmpty())
             wanted.exercise = cases::parseExercise(crashed.note.exercise.toStdString(), crashed.session.string());
@@ -333,7 +343,7 @@ void Simulator::recover(const Crashed& crashed, std::function<void()> then) {
 }
 
 void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
-    if (job_) return;
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
     if (mode_ != Mode::liveSession) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
@@ -393,7 +403,7 @@ Job::Work exporting(const std::shared_ptr<simulation::LiveTooth>& tooth, const m
 }  // namespace
 
 void Simulator::exportStl(const fs::path& path) {
-    if (job_) return;
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
     if (!tooth_) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
@@ -407,7 +417,7 @@ void Simulator::exportStl(const fs::path& path) {
 }
 
 void Simulator::exportTissues(const fs::path& folder) {
-    if (job_) return;
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
     if (!tooth_) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
@@ -439,7 +449,7 @@ void Simulator::writeReport(const fs::path& file) {
 }
 
 void Simulator::copyRecording(const fs::path& file) {
-    if (job_ || !isRecorded()) return;
+    if (job_ || !isRecorded() || !may(exercise::Operation::elsewhere)) return;
     start(
         tr("Copying the recording"),
         [from = shelf_.current(), file](const core::Progress&) { core::writeFile(file, core::readFile(from)); },

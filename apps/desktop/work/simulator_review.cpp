@@ -32,7 +32,7 @@ exercise::Permissions Simulator::permissions() const {
                           : mode_ == Mode::liveSession ? WorkMode::work
                           : mode_ == Mode::replay      ? WorkMode::replay
                                                        : WorkMode::nothing;
-    return exercise::permissionsOf(exercise(), mode);
+    return exercise::permissionsOf(exercise(), mode, exam_.has_value());
 }
 
 bool Simulator::may(exercise::Operation operation) {
@@ -56,7 +56,7 @@ cases::Attempt Simulator::attemptNow(bool handedIn) {
 }
 
 void Simulator::handIn(const fs::path& path) {
-    if (job_) return;
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
     if (mode_ != Mode::liveSession) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
@@ -94,6 +94,7 @@ void Simulator::handIn(const fs::path& path) {
 }
 
 void Simulator::review(const fs::path& attempt) {
+    if (!may(exercise::Operation::elsewhere)) return;
     LoadRequest wanted = request();
     wanted.path = attempt;
     loadFor(std::move(wanted), tr("Opening %1").arg(toQString(attempt.filename())), [this](LoadedTooth loaded) {

@@ -21,6 +21,7 @@ LoadRequest Simulator::requestAgain() const {
 }
 
 void Simulator::openExercise(const fs::path& path, bool unaided) {
+    if (!may(exercise::Operation::elsewhere)) return;
     LoadRequest wanted = request();
     wanted.task = path;
     wanted.unaided = unaided;
@@ -30,7 +31,7 @@ void Simulator::openExercise(const fs::path& path, bool unaided) {
 /// While a live session runs.
 void Simulator::watchTime() {
     const auto& task = document_.task;
-    if (!task || !task->minutes || isTimeTold_ || workedS() < 60.0 * *task->minutes) return;
+    if (exam_ || !task || !task->minutes || isTimeTold_ || workedS() < 60.0 * *task->minutes) return;
     isTimeTold_ = true;
     isTimeOver_->store(task->isTimeHard, std::memory_order_relaxed);
     tellTimeOver();
@@ -42,7 +43,7 @@ void Simulator::tellTimeOver() {
 }
 
 void Simulator::finish() {
-    if (job_ || mode_ != Mode::liveSession || !document_.task) return;
+    if (job_ || mode_ != Mode::liveSession || !document_.task || !may(exercise::Operation::elsewhere)) return;
     if (!isRecorded()) {
         emit failed(problemById(QStringLiteral("no-recording")));
         return;

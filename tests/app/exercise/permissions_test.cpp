@@ -44,13 +44,13 @@ TEST(Permissions, EachLockTakesWhatItSaysAndNothingElse) {
     for (const std::string_view help : cases::kHelps)
         EXPECT_EQ(locked({std::string(help)}), expected.at(std::string(help))) << help;
     const std::vector<std::string> all(cases::kHelps.begin(), cases::kHelps.end());
-    EXPECT_EQ(locked(all).size(), kOperationCount) << "an operation that no lock takes";
+    EXPECT_EQ(locked(all).size(), kOperationCount - 1) << "an operation that no lock takes, but for elsewhere";
     EXPECT_TRUE(locked({}).empty());
 }
 
 TEST(Permissions, HoldInAReplayOfTheWorkAndNotForWhoLooksAtWhatWasHandedIn) {
     const std::vector<std::string> all(cases::kHelps.begin(), cases::kHelps.end());
-    EXPECT_EQ(locked(all, WorkMode::replay).size(), kOperationCount);
+    EXPECT_EQ(locked(all, WorkMode::replay).size(), kOperationCount - 1);
     EXPECT_TRUE(locked(all, WorkMode::review).empty());
     const Permissions review = permissionsOf(nullptr, WorkMode::review);
     for (const Operation operation : {Operation::section, Operation::depthTool, Operation::compare, Operation::report,
@@ -63,6 +63,21 @@ TEST(Permissions, HoldInAReplayOfTheWorkAndNotForWhoLooksAtWhatWasHandedIn) {
         }
     EXPECT_TRUE(permissionsOf(nullptr, WorkMode::nothing).allows(Operation::chart)) << "else no tooth could be chosen";
     EXPECT_FALSE(permissionsOf(nullptr, WorkMode::nothing).allows(Operation::section));
+}
+
+TEST(Permissions, AnExamShutsOtherWorkWhateverOneIsAt) {
+    cases::Exercise exercise;
+    exercise.lockedHelps = {"undo"};
+    for (const WorkMode mode : {WorkMode::nothing, WorkMode::work, WorkMode::replay, WorkMode::review}) {
+        EXPECT_TRUE(permissionsOf(&exercise, mode).allows(Operation::elsewhere));
+        const Permissions exam = permissionsOf(&exercise, mode, true);
+        EXPECT_TRUE(exam.isExam());
+        for (const Operation operation : kShutInExam)
+            EXPECT_TRUE(exam.locks(operation) && !exam.allows(operation));
+    }
+    const Permissions exam = permissionsOf(&exercise, WorkMode::work, true);
+    EXPECT_TRUE(exam.locks(Operation::undo));
+    EXPECT_TRUE(exam.allows(Operation::section)) << "what is not locked is there";
 }
 
 TEST(Permissions, TheBurToBeginWithIsAnAllowedOne) {

@@ -279,14 +279,24 @@ TEST_F(AtAStation, ACandidateBeginsWithAnInvigilatorAndEveryBeginningStays) {
     EXPECT_EQ(tried(kCode, "t1", kPin, kOpens + 3 * kHour), "exam-expired");
     EXPECT_EQ(tried(kCode, "s1", kPin, kOpens), "exam-invigilator") << "no student confirms a student";
     EXPECT_EQ(errorIdOf([&] { (void)at.begin(kCode, "t1", kPin, 0, kOpens); }), "exam-rubric-newer");
+    // To look at what a code begins is to begin nothing.
+    const Sitting offered = at.look(kCode, kRubricFormat, kOpens);
+    EXPECT_EQ(offered.deadline, kOpens + 30 * kMinute);
+    EXPECT_TRUE(offered.id.empty());
+    EXPECT_EQ(errorIdOf([&] { (void)at.look(kCode, kRubricFormat, kOpens - 1); }), "exam-early");
+    EXPECT_EQ(errorIdOf([&] { (void)at.look("AAA-AAA-AAA-AAA", kRubricFormat, kOpens); }), "exam-candidate-unknown");
     EXPECT_EQ(at.end().number, 1) << "nothing of it was noted but that the service started";
     const std::string first = begin(at).id;
     EXPECT_EQ(at.sitting()->deadline, kOpens + 31 * kMinute);
+    EXPECT_EQ(errorIdOf([&] { (void)at.look(kExtra, kRubricFormat, kOpens); }), "exam-running");
+    EXPECT_EQ(errorIdOf([&] { (void)at.endOf(first); }), "exam-none") << "it has not ended";
     EXPECT_EQ(tried(kExtra, "t1", kPin, kOpens + kMinute), "exam-running");
     EXPECT_EQ(errorIdOf([&] { at.checkpoint(std::string(32, '0'), 1, 5, std::string(64, '1'), kOpens); }), "exam-none");
     handOver(at, first);
     const Signed finished = at.finish(first, {std::string(16, '9')}, kOpens + 20 * kMinute);
     EXPECT_EQ(entryFrom(finished.text, "").files.front().file, school::sha256("a session"));
+    EXPECT_EQ(at.endOf(first).text, finished.text);
+    EXPECT_EQ(errorIdOf([&] { (void)at.endOf(std::string(32, '0')); }), "exam-none");
     EXPECT_FALSE(at.sitting());
     EXPECT_EQ(errorIdOf([&] { (void)at.finish(first, {std::string(16, '9')}, kOpens); }), "exam-none");
     // Once more: it can, with an invigilator, and it shows.

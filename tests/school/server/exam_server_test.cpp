@@ -4,6 +4,8 @@
 #include <atomic>
 
 #include "handpiece/app/proving/exam_check.h"
+#include "handpiece/app/report/exam_pages.h"
+#include "handpiece/base/config/words.h"
 #include "handpiece/record/session/recorder.h"
 #include "handpiece/school/people/secret.h"
 #include "school/exam_arrival.h"
@@ -127,7 +129,11 @@ class ExamTest : public school_server::SchoolTest {
     }
     [[nodiscard]] std::vector<std::string> doubts(const std::string& sitting) const {
         Books open(data());
-        return school_server::doubtsOf(open, *ExamBooks(open).sitting(sitting));
+        std::vector<std::string> all = school_server::doubtsOf(open, *ExamBooks(open).sitting(sitting));
+        const config::LanguageHere japanese("ja");
+        for (const std::string& one : all)
+            EXPECT_NE(report::doubtWords(one), one) << "it has no words of another language";
+        return all;
     }
     /// A hand that was made up, at 1 kHz.
     static fs::path madeUp(const fs::path& file, int seconds, int seed, bool undoes = false) {
@@ -158,6 +164,10 @@ TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
     // The network is gone.
     {
         const Service at(service());
+        EXPECT_THAT(at.client().look(kCandidate),
+                    AllOf(HasSubstr("\"title\":\"Block exam\""), HasSubstr("\"time_ms\":2250000"),
+                          HasSubstr("\"locked\":[\"undo\",\"reset\"]")));
+        EXPECT_TRUE(at.client().desk().sitting.empty()) << "who looks begins nothing";
         const Desk desk = at.client().begin(kCandidate, "t1", kPin);
         EXPECT_EQ(desk.title, "Block exam");
         EXPECT_EQ(desk.deadline - desk.began, 37 * 60'000 + 30'000) << "with a quarter more time";
@@ -171,10 +181,26 @@ TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
         EXPECT_TRUE(soon([&] { return !at.client().desk().trouble.empty(); }));
         EXPECT_THAT(at.client().desk().trouble, HasSubstr("nobody answers there"));
         EXPECT_TRUE(at.client().desk().sitting.empty());
+        EXPECT_EQ(at.client().ending(sitting), exam::joined(entry));
+        EXPECT_EQ(at.client().receipt(sitting), "") << "the school has not heard of it";
+        EXPECT_EQ(errorIdOf([&] { (void)at.client().ending(std::string(32, '0')); }), "exam-none");
+        EXPECT_EQ(at.client().receipt("../../station"), "");
     }
     School school(data(), 0, port);
     const Service at(service());
     ASSERT_TRUE(soon([&] { return hasArrived(sitting); })) << at.client().desk().trouble;
+    // The station has the school's receipt by then, and no other station gets it.
+    ASSERT_TRUE(soon([&] { return !at.client().receipt(sitting).empty(); })) << at.client().desk().trouble;
+    const exam::Receipt fetched =
+        exam::openedReceipt(at.client().receipt(sitting), exam::stationIn(service()).serverKey, "");
+    EXPECT_EQ(fetched.sitting, sitting);
+    EXPECT_THAT(fetched.files, ElementsAre(school::sha256Of(session())));
+    {
+        const school_station::Enrolment other = school_station::enrol(school.address(), school_server::kCode, "s017");
+        httplib::Client http(school.address());
+        const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + other.key}};
+        EXPECT_EQ(http.Get("/api/v1/exams/sittings/" + sitting + "/receipt", headers)->status, 404);
+    }
     prove();
     EXPECT_EQ(scoresOf(sitting).back().state, "proven") << scoresOf(sitting).back().reason;
     EXPECT_EQ(scoresOf(sitting).back().reason, "") << "a station that says no score says no other one";
@@ -193,6 +219,28 @@ TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
     EXPECT_EQ(read.verdict, "to be confirmed");
     EXPECT_THAT(receipt, AllOf(Not(HasSubstr("s017")), Not(HasSubstr("Ida"))));
     EXPECT_EQ(fs::status(data() / "exam.key").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(ExamDoubts, AreToldInThePagesLanguage) {
+    const auto in = [](const char* language, const char* said) {
+        const config::LanguageHere here(language);
+        return report::doubtWords(said);
+    };
+    for (const char* said :
+         {"it was handed over 125 s late", "nothing was heard of the work before it was handed over",
+          "nothing was heard of the work for 130 s", "recording 1: undo was used 2 times, and it was locked",
+          "recording 1 is another than the one that was noted during the work (at tick 2000)",
+          "recording 2 went back from 3000 to 2000 ticks", "it was begun before the exam opened, 2026-11-26 15:08 UTC"})
+        EXPECT_EQ(in("en", said), said);
+    EXPECT_EQ(in("ja", "it was handed over 125 s late"), "125 s 遅れて提出されました");
+    EXPECT_EQ(in("ja", "nothing was heard of the work before it was handed over"),
+              "提出されるまで、作業の知らせがありませんでした");
+    EXPECT_EQ(in("ja", "nothing was heard of the work for 130 s"), "作業の知らせが 130 s ありませんでした");
+    EXPECT_EQ(in("ja", "recording 1: undo was used 2 times, and it was locked"),
+              "記録 1：使えないはずの undo が 2 回使われました");
+    EXPECT_EQ(in("ja", "recording 2 went back from 3000 to 2000 ticks"),
+              "記録 2 が 3000 から 2000 ティックに戻りました");
+    EXPECT_EQ(in("ja", "something of a newer server"), "something of a newer server");
 }
 
 TEST_F(ExamTest, ARecordingThatWasSwappedIsFound) {

@@ -62,6 +62,7 @@ DrillFeature::DrillFeature(const FeatureContext& context)
     connectWelcome();
     recallBindings();
     const auto tellLocked = [this](Operation operation) {
+        if (operation == Operation::elsewhere) return window_.notices().tell(Notice::examRuns);
         window_.notices().tell(Notice::helpLocked, {operationWords(operation)});
     };
     connect(&view_, &ViewWidget::refused, this, tellLocked);

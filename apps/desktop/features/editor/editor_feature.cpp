@@ -27,10 +27,10 @@ using Command = EditorFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::anew, "actionNewExercise", QT_TRANSLATE_NOOP("Commands", "New exercise..."),
      QT_TRANSLATE_NOOP("Commands", "For teachers: set a task, from its tooth to how it is judged"), "check",
-     "Ctrl+Shift+N", in(Shelf::tools, 41)},
+     "Ctrl+Shift+N", in(Shelf::tools, 41), exercise::Operation::elsewhere},
     {Command::edit, "actionEditExercise", QT_TRANSLATE_NOOP("Commands", "Edit exercise..."),
      QT_TRANSLATE_NOOP("Commands", "For teachers: change an exercise that was saved"), "open", "Ctrl+Shift+G",
-     in(Shelf::tools, 42)},
+     in(Shelf::tools, 42), exercise::Operation::elsewhere},
 };
 
 /// Of the window before. The window's thread only.

@@ -26,10 +26,10 @@ using Command = ExerciseFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::code, "actionCode", QT_TRANSLATE_NOOP("Commands", "Your code..."),
      QT_TRANSLATE_NOOP("Commands", "The code your teacher gave you: it goes into recordings and saved attempts"),
-     "info", "Ctrl+I", in(Shelf::file, 8)},
+     "info", "Ctrl+I", in(Shelf::file, 8), exercise::Operation::elsewhere},
     {Command::handIn, "actionHandIn", QT_TRANSLATE_NOOP("Commands", "Hand in..."),
      QT_TRANSLATE_NOOP("Commands", "Give the attempt to your teacher: one file with the tooth and what was recorded"),
-     "save-as", "Ctrl+Shift+I", in(Shelf::file, 12)},
+     "save-as", "Ctrl+Shift+I", in(Shelf::file, 12), exercise::Operation::elsewhere},
     {Command::exercise, "actionExercise", QT_TRANSLATE_NOOP("Commands", "Exercise"),
      QT_TRANSLATE_NOOP("Commands", "Show the exercise: its title and what to do"), "info", "F9", in(Shelf::view, 24)},
 };
@@ -150,8 +150,8 @@ void ExerciseFeature::showDocument() {
         for (const RecordingPlace& recording : simulator_.reviewed().recordings)
             text.review.recordings.push_back({QString::fromStdString(recording.name), recording.packed});
     }
-    text.canFinish =
-        simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() && !simulator_.task()->rubric.empty();
+    text.canFinish = simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() &&
+                     !simulator_.task()->rubric.empty() && !simulator_.exam();
     const bool isAtWork = simulator_.mode() == Simulator::Mode::liveSession;
     text.hasLiveBar = isAtWork && simulator_.task() && simulator_.task()->hasLiveBar && simulator_.task()->preparation;
     panel_->setText(text);
@@ -168,7 +168,7 @@ void ExerciseFeature::showDocument() {
 void ExerciseFeature::showTick() {
     const auto& task = simulator_.task();
     const bool isAtWork = task && simulator_.mode() == Simulator::Mode::liveSession;
-    if (isAtWork && task->minutes)
+    if (isAtWork && task->minutes && !simulator_.exam())
         panel_->setClock(simulator_.workedS(), 60.0 * *task->minutes);
     else
         panel_->setClock(std::nullopt);

@@ -31,19 +31,20 @@ using Command = PracticeFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::exercises, "actionExercises", QT_TRANSLATE_NOOP("Commands", "Exercises..."),
      QT_TRANSLATE_NOOP("Commands", "Choose an exercise: what it asks, the ideal, your best so far"), "exercise",
-     "Ctrl+Shift+L", in(Shelf::file, 3), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Exercises"))},
+     "Ctrl+Shift+L", in(Shelf::file, 3), in(Shelf::fileBar, 2), brief(QT_TRANSLATE_NOOP("Commands", "Exercises")),
+     exercise::Operation::elsewhere},
     {Command::finish, "actionFinish", QT_TRANSLATE_NOOP("Commands", "Finish"),
      QT_TRANSLATE_NOOP("Commands", "Your work on this exercise is done: it is judged, and you see why"), "check",
-     "Ctrl+Shift+W", in(Shelf::file, 9)},
+     "Ctrl+Shift+W", in(Shelf::file, 9), exercise::Operation::elsewhere},
     {Command::zones, "actionZones", QT_TRANSLATE_NOOP("Commands", "Task in the picture"),
      QT_TRANSLATE_NOOP("Commands", "What is to go and what must stay, as glass over the tooth"), "transparency",
      "Ctrl+Shift+Y", in(Shelf::view, 24), kCheckable, exercise::Operation::transparency},
     {Command::result, "actionResult", QT_TRANSLATE_NOOP("Commands", "Result"),
      QT_TRANSLATE_NOOP("Commands", "The result of the work that was finished last"), "report", "Ctrl+Shift+B",
-     in(Shelf::view, 25)},
+     in(Shelf::view, 25), exercise::Operation::elsewhere},
     {Command::progress, "actionProgress", QT_TRANSLATE_NOOP("Commands", "Progress..."),
      QT_TRANSLATE_NOOP("Commands", "Your results over the attempts at each exercise"), "plot", "Ctrl+Shift+H",
-     in(Shelf::view, 26)},
+     in(Shelf::view, 26), exercise::Operation::elsewhere},
 };
 // A way into the seconds in which something happened, and out of them.
 constexpr double kBeforeS = 1.5, kAfterS = 1.5, kEyeMm = 26.0;
@@ -189,7 +190,7 @@ void PracticeFeature::showDocument() {
     // A block has its figure printed on it; on a tooth one finds one's own way first.
     commands_[Command::zones]->setChecked(isGiven && task->preparation->preparation.starts_with("block-"));
     showZones();
-    if (!isAtWork) return;
+    if (!isAtWork || simulator_.exam()) return;
     if (school::Store* kept = store()) {
         const auto now = QDateTime::currentMSecsSinceEpoch();
         const QString title = task->toothCase.exercise ? inThisLanguage(task->toothCase.exercise->title) : QString();

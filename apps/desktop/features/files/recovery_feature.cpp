@@ -20,7 +20,7 @@ using Command = RecoveryFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::recover, "actionRecover", QT_TRANSLATE_NOOP("Commands", "Recover..."),
      QT_TRANSLATE_NOOP("Commands", "Bring back, or give up, work that ended without saving"), "recent", "Ctrl+Shift+R",
-     in(Shelf::file, 7)},
+     in(Shelf::file, 7), exercise::Operation::elsewhere},
 };
 
 QString titleOf(const SessionNote& note) {

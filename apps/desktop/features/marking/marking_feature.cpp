@@ -27,7 +27,7 @@ using Command = MarkingFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::desk, "actionMarkingDesk", QT_TRANSLATE_NOOP("Commands", "Marking desk..."),
      QT_TRANSLATE_NOOP("Commands", "For teachers: score, look at and mark a folder of returned work"), "check",
-     "Ctrl+Shift+T", in(Shelf::tools, 40)},
+     "Ctrl+Shift+T", in(Shelf::tools, 40), exercise::Operation::elsewhere},
 };
 
 /// A folder that holds what students give back, and is no case, attempt or exercise itself.

@@ -12,13 +12,15 @@ namespace {
 using Command = ReplayFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::open, "actionOpenSession", QT_TRANSLATE_NOOP("Commands", "Open recording..."),
-     QT_TRANSLATE_NOOP("Commands", "Open a recorded session to watch it"), "replay", "Ctrl+H", in(Shelf::file, 20)},
+     QT_TRANSLATE_NOOP("Commands", "Open a recorded session to watch it"), "replay", "Ctrl+H", in(Shelf::file, 20),
+     exercise::Operation::elsewhere},
     {Command::watch, "actionReplay", QT_TRANSLATE_NOOP("Commands", "Replay"),
      QT_TRANSLATE_NOOP("Commands", "Watch what you have done so far; closing the replay brings the tooth back"),
-     "replay", "Ctrl+Y", in(Shelf::file, 21), in(Shelf::toolBar, 41), onCard(6)},
+     "replay", "Ctrl+Y", in(Shelf::file, 21), in(Shelf::toolBar, 41), onCard(6), exercise::Operation::elsewhere},
     {Command::keep, "actionKeepRecording", QT_TRANSLATE_NOOP("Commands", "Keep recording..."),
      QT_TRANSLATE_NOOP("Commands", "Every session is recorded; keep a copy of this one"), "record", "Ctrl+K",
-     in(Shelf::file, 22), in(Shelf::toolBar, 40), brief(QT_TRANSLATE_NOOP("Commands", "Record"))},
+     in(Shelf::file, 22), in(Shelf::toolBar, 40), brief(QT_TRANSLATE_NOOP("Commands", "Record")),
+     exercise::Operation::elsewhere},
 };
 
 }  // namespace

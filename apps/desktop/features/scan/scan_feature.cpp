@@ -11,7 +11,7 @@ using Command = ScanFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::anew, "actionNewScan", QT_TRANSLATE_NOOP("Commands", "New case from scan..."),
      QT_TRANSLATE_NOOP("Commands", "Make a tooth to be cut out of a CT: slices, a DICOM folder, a volume"), "views",
-     "Ctrl+N", in(Shelf::file, 2)},
+     "Ctrl+N", in(Shelf::file, 2), exercise::Operation::elsewhere},
 };
 
 /// A folder that is no case, no attempt and no exercise, or a file whose name only scans have.

@@ -19,7 +19,7 @@ using Command = SchoolFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
     {Command::sharePractice, "actionSharePractice", QT_TRANSLATE_NOOP("Commands", "Let practice be watched"),
      QT_TRANSLATE_NOOP("Commands", "Your teachers may look on while you practise, until you end it or the program"),
-     "eye", "Ctrl+Shift+U", in(Shelf::file, 15), kCheckable},
+     "eye", "Ctrl+Shift+U", in(Shelf::file, 15), kCheckable, exercise::Operation::elsewhere},
 };
 
 constexpr const char* kFlags[] = {"neighbour-touched", "neighbour-cut", "gingiva-cut", "head-touched",
@@ -63,7 +63,8 @@ void SchoolFeature::showDocument() {
 /// What the school gave to do, or what its student shares; nothing else leaves this window.
 bool SchoolFeature::mayBeWatched() const {
     const SchoolStanding& standing = link_.standing();
-    if (!standing.isConnected || simulator_.mode() != Simulator::Mode::liveSession) return false;
+    // An exam is no practice.
+    if (simulator_.exam() || !standing.isConnected || simulator_.mode() != Simulator::Mode::liveSession) return false;
     return commands_[Command::sharePractice]->isChecked() ||
            (!exerciseHash_.isEmpty() && standing.assigned.contains(exerciseHash_));
 }

@@ -19,13 +19,6 @@ constexpr int kQuality = 75;
 constexpr qint64 kMostWaitingBytes = 1 << 20;
 constexpr int kPatienceMs = 300;
 
-/// The one that came with this program; else the one that is found.
-QString program() {
-    const QString name = QStringLiteral("handpiece-school");
-    const QString beside = QCoreApplication::applicationDirPath() + QLatin1Char('/') + name;
-    return QFileInfo(beside).isExecutable() ? beside : QStandardPaths::findExecutable(name);
-}
-
 QByteArray lineOf(const QJsonObject& json) {
     return QJsonDocument(json).toJson(QJsonDocument::Compact) + '\n';
 }
@@ -39,6 +32,12 @@ QByteArray packed(const QImage& picture, const QSize& most) {
 }
 
 }  // namespace
+
+QString schoolProgram() {
+    const QString name = QStringLiteral("handpiece-school");
+    const QString beside = QCoreApplication::applicationDirPath() + QLatin1Char('/') + name;
+    return QFileInfo(beside).isExecutable() ? beside : QStandardPaths::findExecutable(name);
+}
 
 SchoolLink::SchoolLink(std::filesystem::path home, std::filesystem::path sessions, QObject* parent)
     : QObject(parent), home_(std::move(home)), sessions_(std::move(sessions)) {
@@ -67,7 +66,7 @@ bool SchoolLink::isEnrolled() const {
 
 void SchoolLink::begin() {
     if (process_.state() != QProcess::NotRunning || !isEnrolled()) return;
-    const QString path = program();
+    const QString path = schoolProgram();
     if (path.isEmpty()) {
         missing_ = tr("The school's part of the program is not installed (handpiece-school).");
         emit changed();

@@ -17,6 +17,9 @@
 
 namespace handpiece::desktop {
 
+/// handpiece-school: the one that came with this program, else the one that is found; empty: it is not installed.
+[[nodiscard]] QString schoolProgram();
+
 /// As the program beside tells it.
 struct SchoolStanding {
     bool isConnected = false;

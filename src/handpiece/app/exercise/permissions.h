@@ -40,8 +40,9 @@ enum class Operation {
     guidance,  ///< first steps, and hints in the picture
     volumes,   ///< that were removed
     report,
+    elsewhere,  ///< other work, or copies of this one: no exercise locks it, an exam does
 };
-inline constexpr std::size_t kOperationCount = static_cast<std::size_t>(Operation::report) + 1;
+inline constexpr std::size_t kOperationCount = static_cast<std::size_t>(Operation::elsewhere) + 1;
 
 /// Which operations a lock of cases::kHelps takes away. Old locks take what they always took.
 struct Lock {
@@ -72,38 +73,49 @@ static_assert(std::equal(kLocks.begin(), kLocks.end(), cases::kHelps.begin(),
                          [](const Lock& lock, std::string_view help) { return lock.help == help; }),
               "one lock a help, in the order of tooth::kHelps");
 
+/// What is shut besides while an exam runs.
+inline constexpr std::array kShutInExam{Operation::elsewhere, Operation::report, Operation::chart};
+
 /// Plain data: what is allowed and what an exercise forbids. As made by default: everything, any bur.
 class Permissions {
   public:
     [[nodiscard]] bool allows(Operation operation) const noexcept { return !has(locked_ | absent_, operation); }
-    /// Forbidden by the exercise, not by what one is at.
+    /// Forbidden by the exercise or the exam, not by what one is at.
     [[nodiscard]] bool locks(Operation operation) const noexcept { return has(locked_, operation); }
+    /// An exam runs.
+    [[nodiscard]] bool isExam() const noexcept { return isExam_; }
     [[nodiscard]] bool allowsBur(std::string_view bur) const {
         return burs_.empty() || std::find(burs_.begin(), burs_.end(), bur) != burs_.end();
     }
     /// Empty: all.
     [[nodiscard]] const std::vector<std::string>& burs() const noexcept { return burs_; }
 
-    friend Permissions permissionsOf(const cases::Exercise* exercise, WorkMode mode);
+    friend Permissions permissionsOf(const cases::Exercise* exercise, WorkMode mode, bool isExam);
 
   private:
     using Set = std::bitset<kOperationCount>;
     static bool has(const Set& set, Operation operation) noexcept { return set[static_cast<std::size_t>(operation)]; }
 
     Set locked_, absent_;
+    bool isExam_ = false;
     std::vector<std::string> burs_;
 };
 
 /// A pure function. Locks hold while one works, and in a replay of that work; who looks at what was handed in has none.
 /// `exercise`: of the tooth that is worked at, also while a replay covers it; null without one.
-[[nodiscard]] inline Permissions permissionsOf(const cases::Exercise* exercise, WorkMode mode) {
+[[nodiscard]] inline Permissions permissionsOf(const cases::Exercise* exercise, WorkMode mode, bool isExam = false) {
     Permissions permissions;
+    permissions.isExam_ = isExam;
+    if (isExam)
+        for (const Operation operation : kShutInExam)
+            permissions.locked_.set(static_cast<std::size_t>(operation));
     if (mode != WorkMode::work)
         for (const Operation operation : {Operation::undo, Operation::redo, Operation::reset, Operation::depthStop})
             permissions.absent_.set(static_cast<std::size_t>(operation));
     if (mode == WorkMode::nothing) {
         permissions.absent_.set();
         permissions.absent_.reset(static_cast<std::size_t>(Operation::chart));
+        permissions.absent_.reset(static_cast<std::size_t>(Operation::elsewhere));
         permissions.absent_.reset(static_cast<std::size_t>(Operation::guidance));
     }
     if (exercise == nullptr || mode == WorkMode::review) return permissions;

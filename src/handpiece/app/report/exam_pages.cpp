@@ -3,6 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string_view>
+#include <vector>
+
 #include "handpiece/app/report/html_form.h"
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/base/config/words.h"
@@ -41,6 +45,42 @@ std::string moreOf(const school::ExamCandidate& c) {
     if (c.pauseMinutes > 0) add(words()("school-exam.pauses", c.pauseMinutes));
     if (!c.helps.empty()) add(words()("school-exam.helps", c.helps));
     return more;
+}
+
+constexpr const char* kDoubts[] = {
+    "school-exam-doubt.no-beginning",      "school-exam-doubt.no-candidate",    "school-exam-doubt.before-opened",
+    "school-exam-doubt.after-closed",      "school-exam-doubt.no-invigilator",  "school-exam-doubt.begun-here",
+    "school-exam-doubt.begun-elsewhere",   "school-exam-doubt.clock-back",      "school-exam-doubt.clock-ahead",
+    "school-exam-doubt.went-back",         "school-exam-doubt.restarted",       "school-exam-doubt.silent",
+    "school-exam-doubt.given-up",          "school-exam-doubt.never-heard",     "school-exam-doubt.late",
+    "school-exam-doubt.another-recording", "school-exam-doubt.not-handed-over", "school-exam-doubt.too-fast",
+    "school-exam-doubt.locked-used",       "school-exam-doubt.not-comparable",  "school-exam-doubt.chain-changed",
+};
+
+/// What stands in the place of each {} of `pattern`; none where it is another text.
+std::optional<std::vector<std::string>> filledIn(std::string_view pattern, std::string_view text) {
+    std::vector<std::string> filled;
+    for (std::size_t open = pattern.find("{}"); open != pattern.npos; open = pattern.find("{}")) {
+        if (!text.starts_with(pattern.substr(0, open))) return std::nullopt;
+        text.remove_prefix(open);
+        pattern.remove_prefix(open + 2);
+        // The last one goes on to the end.
+        const std::string_view next = pattern.substr(0, pattern.find("{}"));
+        std::size_t end = next.size() == pattern.size() && text.ends_with(next) ? text.size() - next.size()
+                          : next.size() < pattern.size()                        ? text.find(next)
+                                                                                : text.npos;
+        if (end == text.npos || end == 0) return std::nullopt;
+        filled.emplace_back(text.substr(0, end));
+        text.remove_prefix(end);
+    }
+    return pattern == text ? std::optional(filled) : std::nullopt;
+}
+
+std::vector<std::string> told(const std::vector<std::string>& doubts) {
+    std::vector<std::string> all;
+    for (const std::string& one : doubts)
+        all.push_back(doubtWords(one));
+    return all;
 }
 
 /// A verdict, why, and the button.
@@ -106,6 +146,13 @@ std::string examPage(const Looker& who, const ExamView& view, const Names& names
     return page.text();
 }
 
+std::string doubtWords(const std::string& said) {
+    for (const char* id : kDoubts)
+        if (const auto filled = filledIn(config::Words::in("en").text(id), said))
+            return words()(config::Phrase{id, *filled});
+    return said;
+}
+
 std::string sittingPage(const Looker& who, const SittingView& view, const Names& names) {
     const school::ExamSitting& s = view.sitting;
     HtmlReport page = sitePage(fmt::format("{}: {}", view.title, examName(names, s.person)), who);
@@ -141,7 +188,7 @@ std::string sittingPage(const Looker& who, const SittingView& view, const Names&
         if (view.doubts.empty())
             page.paragraph(examWord("no-doubts"), Tone::note);
         else
-            page.list(view.doubts);
+            page.list(told(view.doubts));
     }
     if (view.seesDecisions) {
         addDecisions(page, view, names);

@@ -41,6 +41,9 @@ struct SittingView {
     std::vector<school::ExamDecision> decisions{};
     bool mayConfirm = false, mayAppeal = false, mayRemark = false, mayDecide = false;
 };
+/// What stands out of a sitting in the page's language: the books keep it in English, and by its English words
+/// (school-exam-doubt) it is found again. What is not found stays as it is.
+[[nodiscard]] std::string doubtWords(const std::string& said);
 /// One sitting: what came, what is doubted, what was decided, and what this person may decide.
 [[nodiscard]] std::string sittingPage(const Looker& who, const SittingView& view, const Names& names);
 

@@ -187,19 +187,22 @@ void Invigilation::requireInvigilator(const Pack& pack, const std::string& perso
     guesses_.succeeded(person);
 }
 
-const Sitting& Invigilation::begin(const std::string& candidateCode, const std::string& invigilator,
-                                   const std::string& pin, std::int64_t rubricFormat, Milliseconds now) {
+Sitting Invigilation::look(const std::string& candidateCode, std::int64_t rubricFormat, Milliseconds now) const {
     if (sitting_)
         throw core::Error("somebody is at an exam at this station", sitting_->id,
                           "hand that work over first, or let an invigilator give it up")
             .as("exam-running", {sitting_->id});
     std::vector<std::string> problems;
-    const std::vector<Installed> all = packsIn(folder_, problems);
-    const Installed* mine = nullptr;
-    for (const Installed& one : all)
+    std::vector<Installed> all = packsIn(folder_, problems);
+    Sitting sitting;
+    bool isKnown = false;
+    for (Installed& one : all)
         for (const Candidate& c : one.pack.candidates)
-            if (c.code == candidateHash(one.pack.exam, candidateCode)) mine = &one;
-    if (mine == nullptr)
+            if (c.code == candidateHash(one.pack.exam, candidateCode)) {
+                sitting.candidate = c, isKnown = true;
+                sitting.exam = one;
+            }
+    if (!isKnown)
         throw core::Error(all.empty() && !problems.empty()
                               ? "none of the exams at this station can be used: " + problems.front()
                               : std::string("no exam at this station knows a candidate of this code"),
@@ -207,15 +210,22 @@ const Sitting& Invigilation::begin(const std::string& candidateCode, const std::
                           "type it as it stands on the slip; who came later needs a newer pack: handpiece school exam "
                           "fetch")
             .as("exam-candidate-unknown", {""});
-    const Pack& pack = mine->pack;
+    const Pack& pack = sitting.exam.pack;
     requireFitting(pack, rubricFormat, core::kEngineRevision);
     requireOpen(pack, now);
-    requireInvigilator(pack, invigilator, pin, now);
+    sitting.began = now, sitting.deadline = deadlineOf(pack, sitting.candidate, now);
+    sitting.again = std::count(begun_.begin(), begun_.end(), std::pair(pack.exam, sitting.candidate.code));
+    return sitting;
+}
+
+const Sitting& Invigilation::begin(const std::string& candidateCode, const std::string& invigilator,
+                                   const std::string& pin, std::int64_t rubricFormat, Milliseconds now) {
+    const Sitting sitting = look(candidateCode, rubricFormat, now);
+    requireInvigilator(sitting.exam.pack, invigilator, pin, now);
     Entry e;
     e.at = now, e.kind = "begun", e.sitting = school::newId();
-    e.exam = pack.exam, e.pack = school::sha256(mine->text.text);
-    e.candidate = candidateHash(pack.exam, candidateCode), e.invigilator = invigilator;
-    e.again = std::count(begun_.begin(), begun_.end(), std::pair(e.exam, e.candidate));
+    e.exam = sitting.exam.pack.exam, e.pack = school::sha256(sitting.exam.text.text);
+    e.candidate = sitting.candidate.code, e.invigilator = invigilator, e.again = sitting.again;
     (void)add(std::move(e));
     return *sitting_;
 }
@@ -279,6 +289,20 @@ std::vector<Signed> Invigilation::entriesAfter(std::int64_t number, std::size_t 
     for (std::int64_t next = number + 1; next <= end_.number && all.size() < most; ++next)
         all.push_back(parted(textOf(entryFile(folder_, next), kMostEntryBytes), entryFile(folder_, next).string()));
     return all;
+}
+
+Signed Invigilation::endOf(const std::string& sitting) const {
+    for (std::int64_t number = end_.number; number > 0; --number) {
+        const fs::path file = entryFile(folder_, number);
+        Signed entry = parted(textOf(file, kMostEntryBytes), file.string());
+        const Entry read = entryFrom(entry.text, file.string());
+        if (read.sitting != sitting) continue;
+        if (read.kind != "finished" && read.kind != "given-up") break;
+        return entry;
+    }
+    throw core::Error("no such exam has ended at this station", sitting.substr(0, 40),
+                      "ask at the station that held it")
+        .as("exam-none", {sitting.substr(0, 40)});
 }
 
 fs::path Invigilation::fileOf(const std::string& sitting, const std::string& sha256) const {

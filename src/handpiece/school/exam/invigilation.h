@@ -59,9 +59,12 @@ class Invigilation {
     /// Who is at work just now, also after the service was started again.
     [[nodiscard]] const std::optional<Sitting>& sitting() const { return sitting_; }
 
-    /// The candidate's code says which exam. `rubricFormat`, `engine`: what this program knows. Throws core::Error:
-    /// "exam-candidate-unknown", "exam-early", "exam-expired", "exam-invigilator" (not known, or another confirmation
-    /// code), "exam-wait" (too many wrong ones), "exam-running", and requireFitting()'s.
+    /// What would be begun by this code, for the invigilator to look at: with no id. The code says which exam.
+    /// `rubricFormat`: what this program knows. Throws core::Error: "exam-running", "exam-candidate-unknown",
+    /// "exam-early", "exam-expired", and requireFitting()'s.
+    [[nodiscard]] Sitting look(const std::string& candidateCode, std::int64_t rubricFormat, Milliseconds now) const;
+    /// Throws as look(), and "exam-invigilator" (not known, or another confirmation code), "exam-wait" (too many wrong
+    /// ones).
     const Sitting& begin(const std::string& candidateCode, const std::string& invigilator, const std::string& pin,
                          std::int64_t rubricFormat, Milliseconds now);
     /// Throw core::Error "exam-none" where nobody is at work, or `id` is another sitting.
@@ -77,6 +80,8 @@ class Invigilation {
     [[nodiscard]] ChainEnd end() const { return end_; }
     /// What follows `number`, `most` at once.
     [[nodiscard]] std::vector<Signed> entriesAfter(std::int64_t number, std::size_t most) const;
+    /// The entry that ended this sitting. Throws core::Error "exam-none" where none did.
+    [[nodiscard]] Signed endOf(const std::string& sitting) const;
     /// A recording that was handed over, by its SHA-256; empty: it is not here.
     [[nodiscard]] std::filesystem::path fileOf(const std::string& sitting, const std::string& sha256) const;
 

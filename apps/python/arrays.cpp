@@ -62,7 +62,9 @@ py::array_t<double, py::array::c_style> numbersFrom(const py::handle& given, con
     if (!array) PyErr_Clear();
     if (kind != 'f' && kind != 'i' && kind != 'u')
         throw py::type_error(fmt::format("{} must be an array of real numbers", name));
-    return py::array_t<double, py::array::c_style | py::array::forcecast>(array);
+    // NumPy hands on memory that is not aligned as it is, unless it is asked.
+    constexpr int kDense = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+    return py::array_t<double, kDense>(array);
 }
 
 std::vector<core::Vec3> pointsFrom(const py::handle& given, const char* name) {

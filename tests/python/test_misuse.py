@@ -75,6 +75,8 @@ class Arrays(Test):
                             (ValueError, [(0, 0, np.nan)] * 3, [(0, 1, 2)]), (TypeError, vertices, [])):
             with self.assertRaises(error):
                 hp.Mesh(v, f)
+        faces = np.frombuffer(b"\0" + np.array([[0, 1, 2]]).tobytes(), np.uint8)[1:].view(np.int64).reshape(1, 3)  # not aligned
+        np.testing.assert_array_equal(hp.Mesh(vertices, faces).faces, [[0, 1, 2]])
         empty = hp.Mesh(np.zeros((0, 3)), np.zeros((0, 3), int))
         self.assertEqual((empty.vertices.shape, empty.faces.shape), ((0, 3), (0, 3)))
         self.assertError("", empty.repair)

@@ -71,19 +71,23 @@ class Probing(Test):
         self.assertEqual((len(bare.patch_starts), len(bare.patch_area_mm2)), (0, 0))
 
     def test_any_number_of_threads(self):
-        given = poses(3000)
+        """Also along a way, where a method begins with what it found at the pose before."""
         self.addCleanup(hp.set_threads, 0)
-        every = []
-        for threads in (1, 2, 3, 0):
-            hp.set_threads(threads)
-            contact = hp.Contact(tooth(), "round-4")
-            probe = contact.probe(given)
-            again = contact.probe(given)  # whatever was asked before
-            every += [probe, again]
-        for other in every[1:]:
-            for name in ("depth_mm", "normal", "tooth_point_mm", "area_mm2", "tissue", "status", "patch_centre_mm",
-                         "patch_area_mm2", "patch_starts"):
-                self.assertEqual(getattr(every[0], name).tobytes(), getattr(other, name).tobytes(), name)
+        ends = poses(9, seed=5)
+        way = np.vstack([a + (b - a) * np.linspace(0, 1, 250)[:, None] for a, b in zip(ends, ends[1:])])
+        way[:, 3:] /= np.linalg.norm(way[:, 3:], axis=1, keepdims=True)
+        for method in ("field", "hull"):
+            every = []
+            for threads in (1, 2, 3, 0):
+                hp.set_threads(threads)
+                contact = hp.Contact(tooth(), "round-4", method)
+                first = contact.probe(way)
+                contact.probe(way[::-1])  # whatever was asked before
+                every += [first, contact.probe(way)]
+            for other in every[1:]:
+                for name in ("depth_mm", "normal", "tooth_point_mm", "area_mm2", "tissue", "status", "patch_centre_mm",
+                             "patch_area_mm2", "patch_starts"):
+                    self.assertEqual(getattr(every[0], name).tobytes(), getattr(other, name).tobytes(), f"{method}: {name}")
 
     def test_matrices_are_the_same_poses(self):
         given = poses(50)

@@ -23,8 +23,9 @@ THIRD_PARTY = {
     r"sodium\.h": r"src/handpiece/school/(store/content_files|people/secret|exam/signing)\.cpp",
     r"openssl/": r"apps/school/jwt\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
+    r"pybind11/|Python\.h": r"apps/python/.*",
     r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
-    r"nlohmann/": r"apps/(cli|studies|school)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/(app|school)/.*",
+    r"nlohmann/": r"apps/(cli|studies|school|python)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/(app|school)/.*",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",
@@ -53,7 +54,7 @@ DESKTOP = {
 }
 BETWEEN_FEATURES = set()
 # The applications stand beside each other.
-APPS = {"cli": {"studies"}, "studies": set(), "desktop": set(), "school": {"cli", "studies"}}
+APPS = {"cli": {"studies"}, "studies": set(), "desktop": set(), "school": {"cli", "studies"}, "python": {"studies"}}
 # What the tick's own rooms never include: anything that locks, waits, prints or touches a file. The device drivers and
 # the loop's runner may talk to base/rt, which hides the threads.
 TICK_FORBIDDEN = re.compile(r"<(mutex|shared_mutex|condition_variable|future|thread|iostream|fstream|sstream|filesystem|regex|unistd\.h|pthread\.h|stdio\.h)>")
@@ -101,7 +102,7 @@ def cycle(uses):
 
 def app_breach(rel, name):
     """Why this file of an application (relative to the root) may not include this; None where it may."""
-    own, target = re.match(r"apps/(\w+)/(.*)", rel), re.match(r"(cli|desktop|studies|school)/(.*)", name)
+    own, target = re.match(r"apps/(\w+)/(.*)", rel), re.match(r"(cli|desktop|python|studies|school)/(.*)", name)
     if not own or not target:
         return None
     app, other = own.group(1), target.group(1)
@@ -122,7 +123,7 @@ def self_test():
     wrong = [("desktop/framework/docks.cpp", "desktop/features/sound/sound_control.h"), ("desktop/features/sound/a.cpp", "desktop/features/view/view_bar.h"),
              ("desktop/features/sound/a.cpp", "desktop/program/host.h"), ("desktop/widgets/theme.cpp", "desktop/framework/job.h"),
              ("desktop/work/simulator.cpp", "desktop/features/features.h"), ("cli/cli.cpp", "desktop/framework/job.h"),
-             ("desktop/program/host.cpp", "cli/inputs.h"), ("studies/csv.cpp", "cli/inputs.h"), ("studies/csv.cpp", "desktop/framework/job.h")]
+             ("desktop/program/host.cpp", "cli/inputs.h"), ("studies/csv.cpp", "cli/inputs.h"), ("python/run.cpp", "cli/inputs.h"), ("studies/csv.cpp", "python/bind.h"), ("studies/csv.cpp", "desktop/framework/job.h")]
     right = [("desktop/features/sound/a.cpp", "desktop/features/sound/b.h"), ("desktop/features/features.cpp", "desktop/features/sound/b.h"),
              ("desktop/features/sound/a.cpp", "desktop/work/simulator.h"), ("desktop/program/host.cpp", "desktop/features/features.h"),
              ("cli/cli.cpp", "studies/csv.h"), ("cli/cli.cpp", "handpiece/base/core/error.h")]
@@ -149,7 +150,7 @@ def main():
                     breaches.append(f"{rel}: includes {name}, but {mine} does not use '{target.group(2)}'")
             if breach := app_breach(rel, name):
                 breaches.append(breach)
-            if own and re.match(r"(cli|desktop|studies)/", name):
+            if own and re.match(r"(cli|desktop|python|studies)/", name):
                 breaches.append(f"{rel}: a room includes an application ({name})")
             if own and own.group(1).startswith("tick/") and rel not in OFF_TICK and TICK_FORBIDDEN.fullmatch(include):
                 breaches.append(f"{rel}: the tick includes {include}")

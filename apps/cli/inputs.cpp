@@ -12,7 +12,6 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
-#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
 #include "studies/progress_bar.h"
@@ -105,14 +104,8 @@ std::shared_ptr<const instrument::Bur> loadBur(const BurInput& bur) {
 }
 
 course::Made exerciseOf(const std::string& given) {
-    const auto& shipped = course::shippedExercises();
-    const bool comesAlong = std::any_of(shipped.begin(), shipped.end(), [&](const auto& s) { return s.id == given; });
-    if (core::isThere(given) || !comesAlong) return {given, tasks::readTask(given)};
-    const fs::path cache = field::userCacheFolder();
-    if (cache.empty())
-        throw core::Error("there is no folder to make this exercise in", given, "set XDG_CACHE_HOME or HOME");
     studies::ProgressBar bar("making the exercise");
-    course::Made made = course::makeShipped(given, cache / "starter", bar.listener());
+    course::Made made = course::openExercise(given, bar.listener());
     bar.finish();
     return made;
 }

@@ -14,46 +14,13 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/base/geometry/repair.h"
 #include "handpiece/base/geometry/self_intersection.h"
+#include "studies/told_json.h"
 
 namespace handpiece::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
 using geometry::MeshReport;
-
-Json toJson(const core::Vec3& v) {
-    return {v.x(), v.y(), v.z()};
-}
-
-Json toJson(const MeshReport& r) {
-    Json json{{"vertices", r.vertices},
-              {"faces", r.faces},
-              {"edges", r.edges},
-              {"box_min_mm", toJson(r.boxMm.min)},
-              {"box_max_mm", toJson(r.boxMm.max)},
-              {"box_size_mm", toJson(r.boxMm.size())},
-              {"area_mm2", r.areaMm2},
-              {"volume_mm3", r.volumeMm3},
-              {"shells", r.shells},
-              {"open_edges", r.openEdges},
-              {"boundary_loops", r.boundaryLoops},
-              {"non_manifold_edges", r.nonManifoldEdges},
-              {"non_manifold_vertices", r.nonManifoldVertices},
-              {"flipped_faces", r.flippedFaces},
-              {"inside_out_shells", r.insideOutShells},
-              {"duplicate_vertices", r.duplicateVertices},
-              {"unused_vertices", r.unusedVertices},
-              {"degenerate_faces", r.degenerateFaces},
-              {"duplicate_faces", r.duplicateFaces},
-              {"orientable", r.orientable},
-              {"closed", r.closed()},
-              {"oriented", r.oriented()},
-              {"euler_characteristic", r.eulerCharacteristic},
-              {"genus", r.genus ? Json(*r.genus) : Json(nullptr)},
-              {"probable_unit", geometry::unitName(r.unit.unit)},
-              {"probable_unit_reason", r.unit.reason}};
-    return json;
-}
 
 void row(std::string_view label, const std::string& value) {
     fmt::print("  {:<22} {}\n", label, value);
@@ -114,7 +81,7 @@ void info(const std::string& file, const MeshUnit& unit, bool json) {
     const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
     if (json) {
         Json out{{"file", file}};
-        out.update(toJson(report));
+        out.update(studies::toJson(report));
         out["crossing_faces"] = crossings.size();
         out["notes"] = notes;
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -137,38 +104,6 @@ struct RepairOptions {
     bool keepDebris = false, json = false;
 };
 
-Json toJson(const geometry::RepairReport& r) {
-    Json holes = Json::array();
-    for (const geometry::ClosedHole& h : r.holes)
-        holes.push_back({{"edges", h.edges},
-                         {"perimeter_mm", h.perimeterMm},
-                         {"area_mm2", h.areaMm2},
-                         {"centre_mm", toJson(h.centreMm)}});
-    return {{"weld_mm", r.weldMm},
-            {"welded_vertices", r.weldedVertices},
-            {"removed_degenerate_faces", r.removedDegenerateFaces},
-            {"removed_duplicate_faces", r.removedDuplicateFaces},
-            {"removed_fin_faces", r.removedFinFaces},
-            {"removed_fin_area_mm2", r.removedFinAreaMm2},
-            {"split_edges", r.splitEdges},
-            {"split_vertices", r.splitVertices},
-            {"dropped_shells", r.droppedShells},
-            {"dropped_faces", r.droppedFaces},
-            {"dropped_area_mm2", r.droppedAreaMm2},
-            {"dropped_volume_mm3", r.droppedVolumeMm3},
-            {"turned_faces", r.turnedFaces},
-            {"closed_holes", r.holes.size()},
-            {"added_faces", r.addedFaces},
-            {"holes", std::move(holes)},
-            {"turned_flat_faces", r.turnedFlatFaces},
-            {"removed_crossing_faces", r.removedCrossingFaces},
-            {"removed_crossing_area_mm2", r.removedCrossingAreaMm2},
-            {"lost_area_mm2", r.lostAreaMm2},
-            {"crossing_faces", r.crossingFaces},
-            {"before", toJson(r.before)},
-            {"after", toJson(r.after)}};
-}
-
 void repair(const RepairOptions& options) {
     // Before the work, not after it: an output that cannot be would waste the wait.
     const geometry::MeshFormat format = geometry::meshFormatOf(options.out);
@@ -188,7 +123,7 @@ void repair(const RepairOptions& options) {
     geometry::writeMesh(options.out, mesh);
     if (options.json) {
         Json out{{"file", options.in}, {"output", options.out}};
-        out.update(toJson(r));
+        out.update(studies::toJson(r));
         out["notes"] = notes;
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
         return;

@@ -13,6 +13,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/attempt.h"
 #include "studies/csv.h"
+#include "studies/probe.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -53,8 +54,10 @@ void probe(const ProbeOptions& o, const MethodRegistry& methods) {
     const auto method = methodOf(o, methods);
     out.write("depth_mm,nx,ny,nz,area_mm2,tissue,time_ns\n");
     contact::PatchSet patches;
-    for (const core::Pose& pose : poses) {
+    for (std::size_t i = 0; i < poses.size(); ++i) {
         if (studies::cancelled()) throw core::Error("cancelled");
+        const core::Pose& pose = poses[i];
+        if (i % studies::kProbeStretch == 0) method->reset();
         const auto start = std::chrono::steady_clock::now();
         const contact::Depth depth = method->depth(pose);
         method->patches(pose, patches);

@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "studies/progress_bar.h"
+#include "studies/told_json.h"
 
 namespace handpiece::cli {
 namespace {
@@ -33,20 +34,7 @@ void replay(const ReplayOptions& o) {
     const std::vector<simulation::NickedTooth> nicked = simulation::nickedTeeth(player.station());
     const report::SessionFigures figures = report::figuresOf(player.reader());
     if (o.json) {
-        nlohmann::ordered_json out{
-            {"state_hash", v.hash}, {"recorded_hash", v.recorded},         {"matches", v.matches},
-            {"ticks", v.ticks},     {"differing_ticks", v.differingTicks}, {"complete", v.complete},
-            {"seams", v.seams},     {"broken_seams", v.brokenSeams},       {"engine_revision", v.engineRevision}};
-        if (!player.toothCase().others.empty())
-            out["other_teeth"] = nlohmann::ordered_json::parse(simulation::nickedJson(nicked));
-        nlohmann::ordered_json hours = nlohmann::ordered_json::object();
-        for (const auto& [hour, seconds] : figures.atHourS)
-            hours[std::to_string(hour)] = seconds;
-        out["time_s"] = {{"total", figures.totalS},
-                         {"by_mirror", figures.byMirrorS},
-                         {"finger_rest", figures.fingerRestS},
-                         {"at_hour", hours}};
-        fmt::print("{}\n", out.dump(2));
+        fmt::print("{}\n", studies::toJson(v, player).dump(2));
     } else {
         fmt::print("state_hash {}\nmatches {}\n", v.hash, v.matches);
         for (const simulation::NickedTooth& tooth : nicked)

@@ -3,12 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <numbers>
 #include <optional>
 
 #include "cli/commands.h"
@@ -16,14 +13,12 @@
 #include "cli/run_device.h"
 #include "cli/sound_track.h"
 #include "handpiece/base/core/error.h"
-#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/instrument/catalogue.h"
-#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/tick/device/capability.h"
 #include "studies/built_in_motion.h"
 #include "studies/cut_run.h"
 #include "studies/cutting_motion.h"
-#include "studies/excavation.h"
+#include "studies/hand_run.h"
 #include "studies/progress_bar.h"
 #include "studies/run_job.h"
 #include "studies/run_output.h"
@@ -31,24 +26,13 @@
 namespace handpiece::cli {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-struct RunOptions {
+struct RunOptions : studies::HandOptions {
     ContactInputs inputs;
     DeviceOptions device;
-    std::string motion = "drop", deviceModel = "simulated", hand = "normal", force = "proxy", out, sound;
-    double rateHz = 1000.0, durationS = 0.0, stiffness = 1.0, damping = 1.0, slide = 1.0, speedMmS = 10.0;
-    double loadN = 1.0, depthMm = 0.0, delayMs = 0.0, frictionN = 0.26, lengthMm = 0.0;
-    std::vector<double> at{0.0, 0.0};
-    bool realTime = false, json = false;
-    // Of a cut.
-    double pedal = 0.0, isthmusMm = 1.2, heightMm = 2.5, dwellS = 4.0, tremorUm = 0.0;
-    double pulpGuardMm = studies::kPulpGuardMm;
-    std::uint64_t seed = 1;
-    bool fullRemoval = false, pedalGiven = false, handGiven = false, speedGiven = false, motionGiven = false;
-    std::string drive = "turbine", cuttingParameters, abilities, tissues, code;
-    std::vector<double> undoAtS, redoAtS, resetAtS;
+    std::string out, sound;
+    bool json = false, motionGiven = false;
 };
 
 constexpr std::uint64_t kWatchTicks = 64;
@@ -59,42 +43,6 @@ void printHint(const RunOptions& o, const studies::RunSettings& settings) {
         fmt::print(stderr, "handpiece: the device is yours for {:.0f} s; Ctrl-C ends it sooner.\n", settings.durationS);
 }
 
-Json spreadJson(const loop::Spread& s) {
-    return {{"p50", s.p50}, {"p99", s.p99}, {"p999", s.p999}, {"max", s.max}};
-}
-
-Json summaryJson(const RunOptions& o, const studies::RunSummary& s, const std::string& method,
-                 const std::string& hand) {
-    return {{"tooth", o.inputs.tooth},
-            {"bur", o.inputs.bur.name},
-            {"method", method},
-            {"motion", o.motion},
-            {"force", o.force},
-            {"device", o.device.name},
-            {"device_model", o.deviceModel},
-            {"hand", hand},
-            {"rate_hz", o.rateHz},
-            {"real_time", o.realTime},
-            {"stopped_early", s.stopped},
-            {"duration_s", s.durationS},
-            {"ticks", s.report.ticks},
-            {"late_ticks", s.report.lateTicks},
-            {"missed_periods", s.report.missedPeriods},
-            {"queue_overflow", s.report.queueOverflow},
-            {"scheduling", s.report.scheduling.line()},
-            {"scheduling_class", rt::nameOf(s.report.scheduling.scheduling)},
-            {"work_us", spreadJson(s.report.workUs)},
-            {"lateness_us", spreadJson(s.report.latenessUs)},
-            {"peak_force_n", s.peakForceN},
-            {"deepest_mm", s.deepestMm},
-            {"contact_s", s.contactS},
-            {"largest_area_mm2", s.largestAreaMm2},
-            {"force_limited_ticks", s.limitedTicks},
-            {"slope_limited_ticks", s.slopeLimitedTicks},
-            {"fault_ticks", s.faultTicks},
-            {"truncated_ticks", s.truncatedTicks}};
-}
-
 void printRow(const char* name, const std::string& value) {
     fmt::print("  {:<14}{}\n", name, value);
 }
@@ -103,8 +51,8 @@ void printSummary(const RunOptions& o, const studies::RunSummary& s, const std::
     const auto row = printRow;
     const loop::RunReport& r = s.report;
     fmt::print("{}{}\n", o.out, s.stopped ? " (stopped early; what there was is written)" : "");
-    row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.inputs.tooth, o.inputs.bur.name,
-                           method, s.durationS, o.rateHz));
+    row("ran", fmt::format("{} on {} with {}, {}, {:.3f} s at {:.0f} Hz", o.motion, o.tooth, o.bur, method, s.durationS,
+                           o.rateHz));
     row("ticks", fmt::format("{}, late {}, left out {}", r.ticks, r.lateTicks, r.missedPeriods));
     row("scheduling", r.scheduling.line());
     row("work", fmt::format("p50 {:.1f}, p99 {:.1f}, p99.9 {:.1f}, worst {:.1f} us a tick", r.workUs.p50, r.workUs.p99,
@@ -121,153 +69,11 @@ void printSummary(const RunOptions& o, const studies::RunSummary& s, const std::
     if (r.queueOverflow) row("lost", fmt::format("{} samples came too fast to be written", r.queueOverflow));
 }
 
-studies::RunSettings settingsOf(const RunOptions& o) {
+/// Refuses what cannot be together.
+void validate(const RunOptions& o) {
     validate(o.device);
     if (isReal(o.device) && o.motionGiven)
         throw core::Error("a person moves a real device", "--motion", "leave it out, or take --device simulated");
-    // The loop says the same of rates out of range, but only after the tooth was read.
-    if (!(o.rateHz >= 100.0 && o.rateHz <= 10000.0))
-        throw core::Error(fmt::format("a rate of {} Hz cannot be run", o.rateHz), "--rate",
-                          "choose 1000, 2000, 4000 or 8000");
-    if (!(o.durationS >= 0.0 && o.durationS <= 86400.0))
-        throw core::Error(fmt::format("a run of {} s", o.durationS), "--duration", "give up to a day; 0: the motion's");
-    studies::RunSettings s;
-    s.rateHz = o.rateHz;
-    s.durationS = o.durationS;
-    s.realTime = o.realTime;
-    s.device.capability = device::capabilityByName(o.deviceModel);
-    s.device.frictionN = o.frictionN;
-    s.device.delayS = 1e-3 * o.delayMs;
-    s.device.rigidHand = o.hand == "rigid";
-    if (!s.device.rigidHand && !isReal(o.device)) s.device.hand = device::handByName(o.hand);
-    s.parameters.law = force::lawByName(o.force);
-    s.parameters.stiffnessMultiplier = o.stiffness;
-    s.parameters.dampingMultiplier = o.damping;
-    s.parameters.frictionMultiplier = o.slide;
-    s.parameters.transients.on = s.parameters.vibration.on = o.device.crisp == "on";
-    s.controller = o.device.controller == "on" && !isGuarded(o.device);
-    s.drive = instrument::driveByName(o.drive);
-    force::validate(s.parameters);
-    return s;
-}
-
-device::Motion motionOf(const RunOptions& o, const studies::RunSettings& s, contact::Method& method,
-                        const core::Box& box) {
-    studies::MotionOptions m;
-    m.speedMmS = o.speedMmS;
-    m.lengthMm = o.lengthMm;
-    m.offsetMm = {o.at[0], o.at[1]};
-    constexpr double kRigidDepthMm = 0.5;  // a rigid hand goes exactly there
-    // A depth that is no number goes on to be refused.
-    m.depthMm = !(o.depthMm <= 0.0)  ? o.depthMm
-                : s.device.rigidHand ? kRigidDepthMm
-                                     : o.loadN / s.device.hand.stiffnessNPerMm;
-    return studies::motionByName(o.motion, method, box, m);
-}
-
-bool isCuttingMotion(const std::string& name) {
-    const auto& all = studies::cuttingMotions();
-    return std::any_of(all.begin(), all.end(), [&](const studies::BuiltInMotion& m) { return m.name == name; });
-}
-
-bool isMotionFile(const std::string& name) {
-    return fs::path(name).has_extension() || name == "-";
-}
-
-simulation::SimulationSettings stationSettingsOf(const RunOptions& o, const studies::RunSettings& run,
-                                                 const cases::Case& toothCase, const tooth::LoadSettings& prepare) {
-    simulation::SimulationSettings s;
-    s.rateHz = run.rateHz;
-    s.field = prepare.field;
-    const instrument::Instrument instrument =
-        instrument::makeInstrument(o.inputs.bur.name, o.abilities, o.cuttingParameters, o.inputs.bur.mmPerUnit());
-    s.cuttingParameters = instrument.cuttingParameters;
-    s.bur = instrument.bur;
-    s.drive = run.drive;
-    s.tissues = o.tissues.empty() ? toothCase.tissues : cases::readTissues(o.tissues);
-    s.capability = run.device.capability;
-    s.parameters = run.parameters;
-    const force::Parameters feel = force::defaultParameters(s.tissues);
-    s.parameters.tissues = feel.tissues;
-    s.fullRemoval = o.fullRemoval;
-    return s;
-}
-
-/// How fast this bur comes through the tissues under this hand.
-studies::CuttingRates ratesOf(const RunOptions& o, const studies::RunSettings& run,
-                              const simulation::SimulationSettings& s) {
-    constexpr double kUnderLoad = 0.85;  // of the free speed
-    studies::CuttingRates rates;
-    for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
-        const double felt =
-            std::min(1.0, s.parameters.tissues[t].stiffnessFraction * run.parameters.stiffnessMultiplier) *
-            s.capability.maxStiffnessNPerMm;
-        const double hand = run.device.hand.stiffnessNPerMm;
-        rates.stiffnessNPerMm[t] = run.device.rigidHand ? felt : felt * hand / (felt + hand);
-        rates.cuttingMm2PerN[t] = s.cuttingParameters.cutting * s.tissues.rows[t].cuttingMm2PerN;
-    }
-    rates.speedRadS = kUnderLoad * s.drive.freeSpeedRpm * std::numbers::pi / 30.0 * (o.pedalGiven ? o.pedal : 1.0);
-    rates.loadN = o.loadN;
-    rates.loadCapN = s.cuttingParameters.loadCapN;
-    rates.maxFeedMmS =
-        s.cuttingParameters.chipMm * s.cuttingParameters.edges * rates.speedRadS / (2.0 * std::numbers::pi);
-    rates.centreRadius = s.cuttingParameters.centreRadius;
-    return rates;
-}
-
-device::Motion cutMotionOf(const RunOptions& o, const studies::RunSettings& settings, const cases::Case& toothCase,
-                           const simulation::SimulationSetup& station, std::vector<studies::LesionPlan>& lesions) {
-    const double pedal = o.pedalGiven ? o.pedal : 1.0;
-    const auto& tooth = station.tooth;
-    const auto method = contact::makeFieldMethod(tooth, station.settings.bur);
-    if (!isCuttingMotion(o.motion)) {
-        device::Motion motion = isMotionFile(o.motion)
-                                    ? studies::readMotion(o.motion, settings.device.capability, o.rateHz)
-                                    : motionOf(o, settings, *method, tooth->outer.bounds());
-        return studies::withPedal(motion, pedal);
-    }
-    studies::CuttingScene scene;
-    scene.toothBounds = tooth->outer.bounds();
-    scene.burRadiusMm = station.settings.bur->maxRadiusMm();
-    scene.burLengthMm = station.settings.bur->lengthMm();
-    studies::CuttingOptions cut;
-    cut.pedal = pedal;
-    cut.depthMm = o.depthMm;
-    cut.lengthMm = o.lengthMm;
-    cut.isthmusMm = o.isthmusMm;
-    cut.heightMm = o.heightMm;
-    cut.dwellS = o.dwellS;
-    if (o.speedGiven) cut.feedMmS = o.speedMmS;
-    cut.offsetMm = {o.at[0], o.at[1]};
-    cut.pulpGuardMm = o.pulpGuardMm;
-    if (o.motion != "excavate") return studies::cuttingMotionByName(o.motion, *method, scene, cut);
-    scene = studies::excavationScene(station, toothCase);
-    if (!o.fullRemoval && pedal > 0.0) scene.rates = ratesOf(o, settings, station.settings);
-    studies::Excavation plan = studies::planExcavation(scene, cut);
-    lesions = std::move(plan.lesions);
-    return std::move(plan.motion);
-}
-
-double shareOf(const studies::LesionOutcome& outcome) {
-    return outcome.decayMm3 > 0.0 ? outcome.takenMm3 / outcome.decayMm3 : 1.0;
-}
-
-Json lesionsJson(const std::vector<studies::LesionPlan>& lesions, const std::vector<studies::LesionOutcome>& outcomes) {
-    Json all = Json::array();
-    for (std::size_t i = 0; i < lesions.size(); ++i) {
-        const studies::LesionPlan& l = lesions[i];
-        all.push_back({{"centre_mm", {l.centreMm.x(), l.centreMm.y(), l.centreMm.z()}},
-                       {"axis", {l.axis.x(), l.axis.y(), l.axis.z()}},
-                       {"decay_mm3", l.decayMm3},
-                       {"planned_decay_mm3", l.reachedMm3},
-                       {"planned_sound_mm3", l.soundMm3},
-                       {"left_for_the_pulp_mm3", l.guardedMm3},
-                       {"planned_over_pulp_mm", std::isfinite(l.nearestPulpMm) ? Json(l.nearestPulpMm) : Json()},
-                       {"taken_decay_mm3", outcomes[i].takenMm3},
-                       {"taken_share", shareOf(outcomes[i])},
-                       {"taken_sound_mm3", outcomes[i].soundMm3}});
-    }
-    return all;
 }
 
 void printLesions(const std::vector<studies::LesionPlan>& lesions, const std::vector<studies::LesionOutcome>& outcomes,
@@ -278,7 +84,7 @@ void printLesions(const std::vector<studies::LesionPlan>& lesions, const std::ve
             "{} of {} at ({:.1f}, {:.1f}, {:.1f}), from ({:.2f}, {:.2f}, {:.2f}): {:.2f} of {:.2f} mm3 taken "
             "({:.0f} %), {:.2f} mm3 of sound tooth with it",
             i + 1, lesions.size(), l.centreMm.x(), l.centreMm.y(), l.centreMm.z(), l.axis.x(), l.axis.y(), l.axis.z(),
-            outcomes[i].takenMm3, outcomes[i].decayMm3, 100.0 * shareOf(outcomes[i]), outcomes[i].soundMm3);
+            outcomes[i].takenMm3, outcomes[i].decayMm3, 100.0 * studies::shareOf(outcomes[i]), outcomes[i].soundMm3);
         if (l.guardedMm3 > 0.0)
             text +=
                 fmt::format("; stopped {:.2g} mm short of the pulp: {:.2f} mm3 stay for that", guardMm, l.guardedMm3);
@@ -308,9 +114,6 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     if (o.inputs.method != "field")
         throw core::Error(fmt::format("the method \"{}\" knows no tooth that changes", o.inputs.method), "--method",
                           "cut with field");
-    // A cut is judged by what the hand intends, and an eye leads it there: the simulated hand alone is blind, and would
-    // come to rest where its spring and the device's friction let it.
-    if (!o.handGiven) settings.device.rigidHand = true;
     // What is left of it names the file that it was, and no unit.
     if (o.inputs.unit.mmPerUnit() != 1.0)
         throw core::Error(
@@ -320,101 +123,53 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
     if (isGuarded(o.device)) device.emplace(o.device);
     const tooth::LoadSettings prepare = prepareSettingsOf(o.inputs);
     studies::Outputs outputs(o.out);  // before the work: a folder that cannot be written is told at once
-    // An attempt goes on where it was.
-    std::optional<cases::OpenAttempt> before;
-    if (cases::isAttempt(o.inputs.tooth)) before = cases::openAttempt(o.inputs.tooth);
-    const cases::Case toothCase = before ? before->toothCase : cases::readCase(o.inputs.tooth);
-    simulation::SimulationSettings stationSettings = stationSettingsOf(o, settings, toothCase, prepare);
-    if (before && std::abs(before->attempt.voxelMm - prepare.field.voxelMm) > 1e-9)
-        throw core::Error(fmt::format("the attempt was cut with voxels of {:.6g} um, not {:.6g}",
-                                      1e3 * before->attempt.voxelMm, o.inputs.voxelUm),
-                          o.inputs.tooth, fmt::format("give --voxel {:.6g}", 1e3 * before->attempt.voxelMm));
-    stationSettings.resumed = before.has_value();
     studies::ProgressBar preparing("preparing the tooth");
-    simulation::SimulationSetup station =
-        simulation::makeSimulation(toothCase, std::move(stationSettings), prepare.useCache, preparing.listener());
+    studies::CutJob job = studies::prepareCut(o, settings, prepare, isReal(o.device), preparing.listener());
     preparing.finish();
-    if (before) station.resume(tooth::decodeState(before->attempt.state, station.teeth(), o.inputs.tooth));
-    settings.parameters = station.settings.parameters;
-    std::vector<studies::LesionPlan> lesions;
-    device::Motion motion = isReal(o.device) ? noMotion() : cutMotionOf(o, settings, toothCase, station, lesions);
-    if (o.tremorUm > 0.0 && !isReal(o.device)) motion = studies::withTremor(motion, 1e-3 * o.tremorUm, o.seed);
+    const simulation::SimulationSetup& station = job.station;
+    const device::Motion motion = job.motion ? *job.motion : noMotion();
     if (device) {
-        device->open(settings, &motion, placeOf(toothCase, station));
-        station.settings.capability = settings.device.capability;
-        station.settings.parameters = settings.parameters;
+        device->open(settings, &motion, placeOf(job.toothCase, station));
+        job.station.settings.capability = settings.device.capability;
+        job.station.settings.parameters = settings.parameters;
         printHint(o, settings);
     }
     std::optional<SoundTrack> sound;
     if (!o.sound.empty())
         sound.emplace(o.sound, *station.settings.bur, station.settings.cuttingParameters, station.settings.drive,
                       settings.rateHz, settings.durationS > 0.0 ? settings.durationS : motion.durationS());
-    const studies::CutOutcome outcome =
-        studies::runCut(station, toothCase, settings, motion,
-                        {o.code, before ? before->attempt.elapsedS : 0.0,
-                         before ? before->attempt.caseFile : fs::path(o.inputs.tooth), o.undoAtS, o.redoAtS, o.resetAtS,
-                         [&](const messages::HapticSample& s) {
-                             if (sound) sound->take(s);
-                             if (device && s.tick % kWatchTicks == 0) device->watch();
-                         }},
-                        outputs);
+    studies::CutRunOptions listening;
+    listening.listener = [&](const messages::HapticSample& s) {
+        if (sound) sound->take(s);
+        if (device && s.tick % kWatchTicks == 0) device->watch();
+    };
+    const studies::CutOutcome outcome = studies::runCutJob(job, o, settings, motion, listening, outputs);
     if (sound) sound->finish();
 
-    Json json = summaryJson(o, outcome.summary, "field",
-                            isReal(o.device)            ? "person"
-                            : settings.device.rigidHand ? "rigid"
-                                                        : o.hand);
+    Json json = studies::summaryOf(o, outcome.summary, "field", o.device.name,
+                                   isReal(o.device)            ? "person"
+                                   : settings.device.rigidHand ? "rigid"
+                                                               : o.hand);
     if (device) device->add(json);
-    Json removed, left;
-    for (const cases::Tissue t : station.tooth->tissues.tissues()) {
-        const std::string name(cases::properties(t).name);
-        removed[name] = outcome.summary.removedMm3[static_cast<std::size_t>(t)];
-        left[name] = outcome.leftMm3[static_cast<std::size_t>(t)];
-    }
-    json["pedal"] = o.pedalGiven ? o.pedal : 1.0;
-    json["full_removal"] = o.fullRemoval;
-    json["seed"] = o.seed;
-    json["tremor_um"] = o.tremorUm;
-    json["voxel_um"] = o.inputs.voxelUm;
-    json["ability"] = station.settings.cuttingParameters.name;
-    json["drive"] = station.settings.drive.name;
-    json["removed_mm3"] = removed;
-    json["left_mm3"] = left;
-    if (!toothCase.others.empty()) json["other_teeth"] = Json::parse(simulation::nickedJson(outcome.nicked));
-    const std::vector<studies::LesionOutcome> outcomes = studies::lesionOutcomes(
-        lesions, station.tooth->outer.bounds(), [&](const core::Vec3& p) { return station.tooth->field.distance(p); },
-        [&](const core::Vec3& p) { return station.field->field().distance(p); });
-    if (!lesions.empty()) json["lesions"] = lesionsJson(lesions, outcomes);
-    json["left_over_pulp_mm"] = outcome.leftOverPulpMm ? Json(*outcome.leftOverPulpMm) : Json();
-    json["cut_stl_mm3"] = outcome.cutMeshMm3;
-    json["outer_mm3"] = geometry::enclosedVolumeMm3(toothCase.outer);
-    json["cutting_ticks"] = outcome.summary.cuttingTicks;
-    json["rpm_while_cutting"] = {{"least", outcome.summary.leastRpm}, {"most", outcome.summary.mostRpm}};
-    json["stalled_ticks"] = outcome.summary.stalledTicks;
-    json["out_of_bricks_ticks"] = outcome.summary.outOfBricksTicks;
-    json["undo_steps_taken"] = outcome.undone;
-    json["state_hash"] = simulation::hashText(outcome.stateHash);
-    json["session"] = {{"records", outcome.recording.writtenRecords},
-                       {"lost_records", outcome.recording.lostRecords},
-                       {"bytes", outcome.recording.sizeBytes},
-                       {"message", outcome.recording.message}};
-    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
-    outputs.write("summary.json", text + "\n");
+    const std::vector<studies::LesionOutcome> outcomes = studies::lesionOutcomes(job);
+    studies::addCut(json, o, job, outcome, outcomes);
+    const std::string text = studies::textOf(json);
+    outputs.write("summary.json", text);
     outputs.keep();
     if (o.json) {
-        fmt::print("{}\n", text);
+        fmt::print("{}", text);
         return;
     }
     printSummary(o, outcome.summary, "field");
     if (device) device->print();
     std::string volumes;
-    for (const auto& [name, mm3] : removed.items())
+    for (const auto& [name, mm3] : json["removed_mm3"].items())
         if (mm3.get<double>() > 0.0)
             volumes += fmt::format("{}{} {:.4f}", volumes.empty() ? "" : ", ", name, mm3.get<double>());
     printRow("removed", volumes.empty() ? "nothing" : volumes + " mm3");
     for (const simulation::NickedTooth& tooth : outcome.nicked)
         printRow("nicked", fmt::format("{}: {:.4f} mm3", tooth.name, tooth::sumOf(tooth.removedMm3)));
-    if (!lesions.empty()) {
+    if (!job.lesions.empty()) {
         double soundMm3 = 0.0, gone = 0.0, remaining = 0.0;
         for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
             const auto tissue = static_cast<cases::Tissue>(t);
@@ -423,9 +178,9 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
                 (cases::isCarious(tissue) ? gone : soundMm3) += outcome.summary.removedMm3[t];
         }
         const double all = gone + remaining;
-        printLesions(lesions, outcomes, o.pulpGuardMm);
+        printLesions(job.lesions, outcomes, o.pulpGuardMm);
         double plannedMm3 = 0.0;
-        for (const studies::LesionPlan& l : lesions)
+        for (const studies::LesionPlan& l : job.lesions)
             plannedMm3 += l.reachedMm3;
         constexpr double kKeptUp = 0.8;
         printRow("caries",
@@ -450,13 +205,13 @@ void cutCommand(const RunOptions& o, studies::RunSettings settings) {
 }
 
 void runCommand(const RunOptions& o, const MethodRegistry& methods) {
-    studies::RunSettings settings = settingsOf(o);
+    validate(o);
+    studies::RunSettings settings = studies::settingsOf(o);
     const bool real = isReal(o.device);
-    if (o.pedalGiven || o.fullRemoval || isCuttingMotion(o.motion) || (real && o.inputs.method == "field"))
-        return cutCommand(o, std::move(settings));
+    if (studies::isCut(o) || (real && o.inputs.method == "field")) return cutCommand(o, std::move(settings));
     std::optional<RunDevice> device;
     if (isGuarded(o.device)) device.emplace(o.device);
-    const bool isFile = !real && isMotionFile(o.motion);
+    const bool isFile = !real && studies::isMotionFile(o.motion);
     std::unique_ptr<device::Motion> motion;
     if (isFile)
         motion = std::make_unique<device::Motion>(studies::readMotion(o.motion, settings.device.capability, o.rateHz));
@@ -465,7 +220,8 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     auto method = makeMethod(o.inputs.method, methods, tooth, loadBur(o.inputs.bur));
     const std::string methodName = method->name();
     if (real) motion = std::make_unique<device::Motion>(noMotion());
-    if (!motion) motion = std::make_unique<device::Motion>(motionOf(o, settings, *method, tooth->outer.bounds()));
+    if (!motion)
+        motion = std::make_unique<device::Motion>(studies::touchMotionOf(o, settings, *method, tooth->outer.bounds()));
     if (device) {
         device->open(settings, motion.get(), {tooth->outer.bounds(), 0, 1});
         printHint(o, settings);
@@ -491,13 +247,13 @@ void runCommand(const RunOptions& o, const MethodRegistry& methods) {
     bar.finish();
     trace.finish(outputs, settings.device.capability.maxForceN, false);
     if (sound) sound->finish();
-    Json json = summaryJson(o, summary, methodName, real ? "person" : o.hand);
+    Json json = studies::summaryOf(o, summary, methodName, o.device.name, real ? "person" : o.hand);
     if (device) device->add(json);
-    const std::string text = json.dump(2, ' ', false, Json::error_handler_t::replace);
-    outputs.write("summary.json", text + "\n");
+    const std::string text = studies::textOf(json);
+    outputs.write("summary.json", text);
     outputs.keep();
     if (o.json) {
-        fmt::print("{}\n", text);
+        fmt::print("{}", text);
     } else {
         printSummary(o, summary, methodName);
         if (device) device->print();
@@ -592,6 +348,13 @@ void addRunCommand(Command& app, const MethodRegistry& methods) {
         options->motionGiven = command.isGiven("--motion");
         applySchoolDefaults(command, options->device);
         if (isReal(options->device) && !options->motionGiven) options->motion = "hand";
+        const ContactInputs& in = options->inputs;
+        options->tooth = in.tooth;
+        options->bur = in.bur.name;
+        options->burMmPerUnit = in.bur.mmPerUnit();
+        options->voxelUm = in.voxelUm;
+        options->crisp = options->device.crisp == "on";
+        options->controller = options->device.controller == "on" && !isGuarded(options->device);
         runCommand(*options, methods);
     });
 }

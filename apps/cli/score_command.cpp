@@ -12,11 +12,11 @@
 #include "cli/commands.h"
 #include "cli/inputs.h"
 #include "handpiece/app/assessment/assessment_json.h"
-#include "handpiece/app/assessment/measure_store.h"
-#include "handpiece/app/assessment/scan_work.h"
+#include "handpiece/app/assessment/judge_file.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/assessment/student_page.h"
 #include "handpiece/app/report/assessment_pictures.h"
+#include "handpiece/app/scan_work/scan_work.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
@@ -137,29 +137,12 @@ void run(const ScoreOptions& o) {
         throw core::Error("which exercise is it?", "--exercise",
                           "name its folder or file, or the id of one that comes along");
     const tasks::Task task = exerciseOf(o.exercise).task;
-    if (o.rubric.empty() && task.rubric.empty())
-        throw core::Error("this exercise has no rubric", o.exercise,
-                          "give one with --rubric: a file, or a name of handpiece rubric show");
-    const rubric::Rubric judged = o.rubric.empty() ? rubric::parseRubric(task.rubric, o.exercise + "/rubric.toml")
-                                                   : rubric::rubricByNameOrFile(o.rubric);
-    rubric::requireSound(judged);
-    const bool isScan = scan_work::isScan(o.work);
-    if (!o.before.empty() && !isScan)
-        throw core::Error("an earlier scan belongs to a scan", "--before", "leave it out, or name a scan to judge");
-    scan_work::Files files{o.work, {}, o.unit.mmPerUnit()};
-    if (!o.before.empty()) files.before = o.before;
-    studies::ProgressBar bar(isScan ? "registering the scan" : "cutting it again");
-    const bool isKept = !isScan && !o.noReplay && !o.anew;
-    const auto store = isKept ? assessment::MeasureStore::usual() : assessment::MeasureStore({});
-    assessment::StoreKey key;
-    if (isKept) key = {assessment::workHash(o.work), rubric::hashText(tasks::contentHash(task))};
-    const assessment::Work work = isScan   ? assessment::readScan(files, task, bar.listener())
-                                  : isKept ? assessment::readProvenOnce(o.work, task, key, store, bar.listener())
-                                           : assessment::readWork(o.work, task, !o.noReplay, bar.listener());
+    const rubric::Rubric judged = assessment::rubricFor(task, o.rubric, o.exercise);
+    assessment::WorkFile file{o.work, {}, o.unit.mmPerUnit(), !o.noReplay, !o.anew};
+    if (!o.before.empty()) file.before = o.before;
+    studies::ProgressBar bar(scan_work::isScan(o.work) ? "registering the scan" : "cutting it again");
+    const auto [work, result] = assessment::judgeFile(file, task, judged, bar.listener());
     bar.finish();
-    const assessment::MeasuredWork measured = assessment::measureWork(work, task, assessment::requestsOf(judged));
-    if (isKept) store.add(key, measured);
-    const assessment::Result result = assessment::judge(measured, judged);
     const std::string json = assessment::resultJson(result.assessment, result.identity);
     if (!o.out.empty()) writeAll(o.out, filesOf(o, work, result, json, task, judged));
     if (o.json) {

@@ -24,6 +24,9 @@ namespace {
 
 using messages::HapticSample;
 
+/// Of a run's progress, where surfaces are shaped after it.
+constexpr double kCuttingShare = 0.5;
+
 /// Steps of one kind that are still to be taken.
 struct Due {
     simulation::CutSession::Step step;
@@ -33,16 +36,18 @@ struct Due {
 
 /// The tooth that is left, as one closed surface and as a case of its own.
 void writeCut(const simulation::SimulationSetup& station, const cases::Case& toothCase, const tooth::StateDelta& state,
-              Outputs& outputs, CutOutcome& outcome) {
-    ProgressBar bar("shaping the cut tooth");
-    // Ctrl-C has ended the cutting; what was cut is still written out. Pressed again it ends the program.
-    const core::Progress progress = [shown = bar.listener()](double fraction) {
-        (void)shown(fraction);
-        return true;
-    };
+              const CutRunOptions& options, Outputs& outputs, CutOutcome& outcome) {
     tooth::ToothMirror mirror(station.tooth);
     mirror.apply(state);
     if (const auto thinnest = measure::ToothProbe(mirror).thinnestOverPulp()) outcome.leftOverPulpMm = thinnest->leftMm;
+    if (!options.surfaces) return;
+    ProgressBar bar("shaping the cut tooth");
+    // Ctrl-C has ended the cutting; what was cut is still written out. Pressed again it ends the program.
+    core::Progress progress = [shown = bar.listener()](double fraction) {
+        (void)shown(fraction);
+        return true;
+    };
+    if (options.progress) progress = core::part(options.progress, kCuttingShare, 1.0);
     const surface::MirrorSource source(mirror);
     cases::Case cut = toothCase;
     cut.outer = surface::closedSurface(source, core::part(progress, 0.0, 0.4));
@@ -156,7 +161,8 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
     CutOutcome outcome;
     RunTrace trace(outputs.path("trace.csv"), duration);
     ProgressBar bar("cutting");
-    const core::Progress progress = bar.listener();
+    const core::Progress progress =
+        options.progress ? core::part(options.progress, 0.0, options.surfaces ? kCuttingShare : 1.0) : bar.listener();
     std::uint64_t lastTick = 0;
     bool told = false;
     outcome.summary = runLoop(
@@ -172,7 +178,10 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
                     outcome.undone += session.take(d.step, loop);
                 }
             if (s.tick % 256 != 0) return;
-            progress(s.timeS / duration);
+            if (options.progress)
+                core::report(progress, s.timeS / duration);
+            else
+                progress(s.timeS / duration);
             if (const session::RecorderStatus status = recorder.status(); !told && !status.message.empty()) {
                 told = true;
                 fmt::print(stderr, "handpiece: recording has stopped: {}\n", status.message);
@@ -190,7 +199,7 @@ CutOutcome runCut(const simulation::SimulationSetup& station, const cases::Case&
     if (!told && !outcome.recording.message.empty())
         fmt::print(stderr, "handpiece: recording has stopped: {}\n", outcome.recording.message);
     writeAttempt(station, toothCase, state, options, outcome, outputs);
-    writeCut(station, toothCase, state, outputs, outcome);
+    writeCut(station, toothCase, state, options, outputs, outcome);
     trace.finish(outputs, settings.device.capability.maxForceN, true);
     return outcome;
 }

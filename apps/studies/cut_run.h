@@ -21,6 +21,8 @@ struct CutRunOptions {
     std::filesystem::path casePath;                               ///< for the attempt
     std::vector<double> undoAtS, redoAtS, resetAtS;               ///< each as soon as no stroke is under way
     std::function<void(const messages::HapticSample&)> listener;  ///< hears each sample, in order; may be empty
+    core::Progress progress{};  ///< told instead of a bar on stderr; false: core::Error, the session stays
+    bool surfaces = true;       ///< writes cut.stl and cut/, which takes longer than the cut itself
 };
 
 struct CutOutcome {

@@ -8,7 +8,6 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/force/pose_guard.h"
-#include "studies/csv.h"
 #include "studies/progress_bar.h"
 #include "studies/shaped_device.h"
 
@@ -44,7 +43,10 @@ void RunSummary::take(const messages::HapticSample& s, double periodS) {
 }
 
 device::Motion readMotion(const std::string& file, const device::Capability& capability, double rateHz) {
-    const CsvTable table = readCsv(file, {"t_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"});
+    return readMotion(readCsv(file, {"t_s", "x_mm", "y_mm", "z_mm", "qw", "qx", "qy", "qz"}), capability, rateHz);
+}
+
+device::Motion readMotion(const CsvTable& table, const device::Capability& capability, double rateHz) {
     const double reachMm = capability.workspaceMm.norm(), fastestMmS = force::kMaxJumpMm * rateHz;
     std::vector<device::TimedPose> poses;
     poses.reserve(table.rows.size());

@@ -13,6 +13,7 @@
 #include "handpiece/tick/device/simulated_device.h"
 #include "handpiece/tick/force/parameters.h"
 #include "handpiece/tick/loop/loop_run.h"
+#include "studies/csv.h"
 
 namespace handpiece::studies {
 
@@ -45,6 +46,8 @@ struct RunSummary {
 /// The poses in a CSV file of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz. Throws core::Error with the line of whatever could not
 /// be moved along: times that do not rise, steps wider than the device's workspace or faster than the loop believes.
 [[nodiscard]] device::Motion readMotion(const std::string& file, const device::Capability& capability, double rateHz);
+/// The same from a table of these columns, in this order.
+[[nodiscard]] device::Motion readMotion(const CsvTable& table, const device::Capability& capability, double rateHz);
 
 /// Runs `motion`; `listener` gets each sample in order, may throw. Ends early, cleanly, when cancelled().
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,

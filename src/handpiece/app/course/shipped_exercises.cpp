@@ -9,7 +9,9 @@
 #include "handpiece/app/course/kept_cases.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "handpiece/model/case/fdi.h"
+#include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/lesion/lesion.h"
 #include "handpiece/model/starter/block.h"
 
@@ -350,6 +352,17 @@ Made makeShipped(const std::string& id, const fs::path& folder, const core::Prog
     fs::create_directories(place.parent_path(), error);
     tasks::writeTask(task, place);  // from here on it is there: too late to cancel
     return {place, tasks::readTask(place)};
+}
+
+Made openExercise(const std::string& pathOrId, const core::Progress& progress) {
+    const auto& shipped = shippedExercises();
+    if (core::isThere(pathOrId) ||
+        std::none_of(shipped.begin(), shipped.end(), [&](const Shipped& s) { return s.id == pathOrId; }))
+        return {pathOrId, tasks::readTask(pathOrId)};
+    const fs::path cache = field::userCacheFolder();
+    if (cache.empty())
+        throw core::Error("there is no folder to make this exercise in", pathOrId, "set XDG_CACHE_HOME or HOME");
+    return makeShipped(pathOrId, cache / "starter", progress);
 }
 
 std::vector<Found> exercisesIn(const fs::path& folder, const core::Progress& progress) {

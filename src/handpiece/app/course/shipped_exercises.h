@@ -47,6 +47,10 @@ struct Made {
 [[nodiscard]] Made makeShipped(const std::string& id, const std::filesystem::path& folder,
                                const core::Progress& progress = {}, std::size_t faces = kExerciseFaces);
 
+/// What is named: an exercise's folder or .handpiece file, or the id of one that comes along, which is made in the
+/// user's cache folder. Throws core::Error.
+[[nodiscard]] Made openExercise(const std::string& pathOrId, const core::Progress& progress = {});
+
 /// One of a folder, or what is wrong with it.
 struct Found {
     std::filesystem::path path;

@@ -187,7 +187,9 @@ __attribute__((noinline)) void fetchAndLockWhatFits() {
         stack[i] = 0;
     (void)mlock(const_cast<const unsigned char*>(stack.data()), stack.size());
 #if defined(__linux__) && defined(MADV_POPULATE_READ)
-    extern char codeBegin[] __asm__("__executable_start");
+    // Of the program, or of the shared library that this is part of: its own, nobody else's.
+    __asm__(".hidden __ehdr_start\n.hidden etext");
+    extern char codeBegin[] __asm__("__ehdr_start");
     extern char codeEnd[] __asm__("etext");
     const auto pages = ~static_cast<std::uintptr_t>(sysconf(_SC_PAGESIZE) - 1);
     const std::uintptr_t begin = reinterpret_cast<std::uintptr_t>(codeBegin) & pages;

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/app.h"
+#include "cli/completion.h"
+#include "cli/manual.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
@@ -32,6 +36,21 @@ void finishPrinting() {
             "standard output", "give it a place with room");
 }
 
+/// Says what an option takes as one would say it.
+class Formatter : public CLI::Formatter {
+  public:
+    std::string make_option_name(const CLI::Option* option, bool isPositional) const override {
+        const OptionText text = textOf(*option);
+        return isPositional ? text.names.front() : fmt::format("{}", fmt::join(text.names, ", "));
+    }
+    std::string make_option_opts(const CLI::Option* option) const override {
+        const OptionText text = textOf(*option);
+        std::string all = (text.isArgument && text.value == "TEXT") || text.value.empty() ? "" : " " + text.value;
+        if (!text.standard.empty()) all += "=" + text.standard;
+        return text.required && !text.isArgument ? all + " REQUIRED" : all;
+    }
+};
+
 }  // namespace
 
 int runApp(int argc, const char* const* argv, const App& of) {
@@ -39,6 +58,7 @@ int runApp(int argc, const char* const* argv, const App& of) {
     CLI::App app{of.what, of.name};
     app.require_subcommand(1);
     app.set_version_flag("--version", of.name + " " HANDPIECE_VERSION);
+    app.formatter(std::make_shared<Formatter>());
     app.get_formatter()->column_width(34);
     app.footer("Each command explains itself: " + of.name +
                " COMMAND --help\n"
@@ -48,9 +68,12 @@ int runApp(int argc, const char* const* argv, const App& of) {
     app.add_option_function<std::string>(
            "--language", [](const std::string& language) { config::useLanguage(language); },
            "of the reports: en or ja; else what LANG asks for")
-        ->check(CLI::IsMember(config::Words::languages()));
+        ->check(CLI::IsMember(config::Words::languages())
+                    .description(fmt::format("{}", fmt::join(config::Words::languages(), "|"))));
     Command top(app);
     of.addCommands(top);
+    addCompletionCommand(top, of.name);
+    addManualCommand(top, of.name);
     studies::installCancel();
     try {
         if (of.begin) of.begin();

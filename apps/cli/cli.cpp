@@ -3,14 +3,13 @@
 
 #include "cli/app.h"
 #include "cli/commands.h"
-#include "cli/completion.h"
 #include "cli/school_program.h"
 
 namespace handpiece::cli {
 
 int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, const LawRegistry& extraLaws) {
     if (isForSchool(argc, argv)) return runSchoolProgram(argc, argv);
-    App app{"handpiece", "Handpiece: an open dental surgery simulator", {}, {}};
+    App app{"handpiece", "An open dental surgery simulator", {}, {}};
     app.addCommands = [&](Command& top) {
         addMakeCommand(top);
         addMeshCommand(top);
@@ -33,7 +32,6 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
         addReproduceCommand(top);
         addBenchCommand(top);
         addPassivityCommand(top);
-        addCompletionCommand(top);
     };
     app.begin = [&] {
         for (const auto& [name, make] : extraLaws)

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/command.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 namespace handpiece::cli {
 namespace {
 
-Check checkOf(const CLI::Validator& validator) {
-    return {[validator](std::string& value) { return validator(value); }, validator.get_description()};
+Check checkOf(const CLI::Validator& validator, std::string description) {
+    return {[validator](std::string& value) { return validator(value); }, std::move(description)};
 }
 
 // CLI11's own words name the largest double there is.
@@ -17,14 +20,21 @@ Check saying(const CLI::Validator& validator, const char* what) {
     return {[validator, what](std::string& value) {
                 return validator(value).empty() ? std::string() : value + " is not " + what;
             },
-            validator.get_description()};
+            {}};
 }
+
+// CLI11's names of types are those of this language.
+std::string plainType(const std::string& name) {
+    return name == "FLOAT" || name == "INT" || name == "UINT" ? "NUMBER" : name;
+}
+
+constexpr const char* kDoneBy = "By ";
 
 }  // namespace
 
 template <class T>
 Check range(T low, T high) {
-    return checkOf(CLI::Range(low, high));
+    return checkOf(CLI::Range(low, high), fmt::format("{}..{}", low, high));
 }
 template Check range(int, int);
 template Check range(double, double);
@@ -36,7 +46,7 @@ Check positive() {
     return saying(CLI::PositiveNumber, "more than 0");
 }
 Check oneOf(const std::vector<std::string>& values) {
-    return checkOf(CLI::IsMember(values));
+    return checkOf(CLI::IsMember(values), fmt::format("{}", fmt::join(values, "|")));
 }
 
 Option& Option::required() {
@@ -115,21 +125,60 @@ bool Command::isGiven(const std::string& name) const {
     const CLI::Option* option = app_->get_option_no_throw(name);
     return option != nullptr && option->count() > 0;
 }
+void Command::doneBy(const std::string& program) {
+    app_->group(kDoneBy + program);
+}
+void Command::hide() {
+    app_->group("");
+}
 std::string Command::name() const {
     return app_->get_name();
 }
+std::string Command::what() const {
+    return app_->get_description();
+}
+std::string Command::footer() const {
+    return app_->get_footer();
+}
+std::string Command::doneBy() const {
+    return app_->get_group().starts_with(kDoneBy) ? app_->get_group().substr(std::strlen(kDoneBy)) : "";
+}
 std::vector<Command> Command::subcommands() const {
     std::vector<Command> all;
-    for (CLI::App* sub : app_->get_subcommands([](CLI::App*) { return true; }))
+    for (CLI::App* sub : app_->get_subcommands([](CLI::App* a) { return !a->get_group().empty(); }))
         all.emplace_back(*sub);
     return all;
 }
-std::vector<std::string> Command::optionNames() const {
-    std::vector<std::string> names;
+std::vector<OptionText> Command::options() const {
+    std::vector<OptionText> all;
     for (const CLI::Option* option : app_->get_options())
-        for (const std::string& name : option->get_lnames())
-            names.push_back(name);
-    return names;
+        all.push_back(textOf(*option));
+    return all;
+}
+
+OptionText textOf(const CLI::Option& option) {
+    OptionText text;
+    text.help = option.get_description(), text.group = option.get_group();
+    text.required = option.get_required(), text.isArgument = option.get_positional();
+    for (const std::string& name : option.get_snames())
+        text.names.push_back("-" + name);
+    for (const std::string& name : option.get_lnames())
+        text.names.push_back("--" + name);
+    if (text.isArgument) text.names = {option.get_name(true, false)};
+    if (option.get_type_size() == 0) return text;
+    // The type, and behind a colon what its checks say it is.
+    const std::string type = option.get_type_name();
+    const std::size_t colon = type.find(':');
+    text.value = plainType(colon == std::string::npos ? type : type.substr(colon + 1));
+    text.standard = option.get_default_str();
+    if (text.standard.starts_with('[') && text.standard.ends_with(']'))
+        text.standard = text.standard.substr(1, text.standard.size() - 2);
+    if (option.get_expected_max() == CLI::detail::expected_max_vector_size)
+        text.value += " ...";
+    else
+        for (int i = 1; i < option.get_expected_min(); ++i)
+            text.value += " " + plainType(type);
+    return text;
 }
 
 }  // namespace handpiece::cli

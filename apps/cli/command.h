@@ -27,6 +27,15 @@ template <class T>
 [[nodiscard]] Check positive();
 [[nodiscard]] Check oneOf(const std::vector<std::string>& values);
 
+/// An option as help and manual tell it.
+struct OptionText {
+    std::vector<std::string> names;  ///< with their dashes, as "--out"; of an argument its name
+    std::string value;               ///< what it takes, as "NUMBER" or "mm|cm|m"; empty for a flag
+    std::string standard;            ///< what the value is where none is given
+    std::string help, group;
+    bool required = false, isArgument = false;
+};
+
 /// A handle; the command line owns what it stands for.
 class Option {
   public:
@@ -49,6 +58,9 @@ class Option {
     CLI::Option* option_;
 };
 
+/// What of `option` stands behind its name in the help.
+[[nodiscard]] OptionText textOf(const CLI::Option& option);
+
 /// A handle likewise.
 class Command {
   public:
@@ -57,6 +69,10 @@ class Command {
     /// It does nothing by itself.
     void requireSubcommand();
     void footer(const std::string& text);
+    /// Another program does the work: listed under a heading of its own, without a page.
+    void doneBy(const std::string& program);
+    /// Of no use to a person.
+    void hide();
     void callback(std::function<void()> work);
     /// T: a text, a number, a list of these, or an optional one; see command.cpp. `value` must live as long.
     template <class T>
@@ -66,8 +82,11 @@ class Command {
     [[nodiscard]] bool isGiven(const std::string& name) const;
 
     [[nodiscard]] std::string name() const;
-    [[nodiscard]] std::vector<Command> subcommands() const;
-    [[nodiscard]] std::vector<std::string> optionNames() const;  ///< long ones, without dashes
+    [[nodiscard]] std::string what() const;
+    [[nodiscard]] std::string footer() const;
+    [[nodiscard]] std::string doneBy() const;
+    [[nodiscard]] std::vector<Command> subcommands() const;  ///< but those that are hidden
+    [[nodiscard]] std::vector<OptionText> options() const;
 
   private:
     CLI::App* app_;

@@ -61,7 +61,8 @@ void addContactOptions(Command& command, ContactInputs& inputs, const MethodRegi
     for (const auto& [name, factory] : methods)
         names += ", " + name;
     command.option("--tooth,--case", inputs.tooth, "case folder, .handpiece file, or mesh file (.stl, .ply, .obj; mm)")
-        .required();
+        .required()
+        .typeName("PATH");
     addUnitOptions(command, inputs.unit, false);
     addBurOption(command, inputs.bur);
     command.option("--method", inputs.method, "contact method: " + names).showDefault();

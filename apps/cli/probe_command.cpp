@@ -77,8 +77,9 @@ void addProbeCommand(Command& app, const MethodRegistry& methods) {
     const auto options = std::make_shared<ProbeOptions>();
     addContactOptions(command, options->inputs, methods);
     command.option("--poses", options->poses, "CSV of x,y,z,qw,qx,qy,qz [mm], the bur's tip; - for standard input")
-        .required();
-    command.option("--out", options->out, "CSV to write; - for standard output").showDefault();
+        .required()
+        .typeName("FILE");
+    command.option("--out", options->out, "CSV to write; - for standard output").showDefault().typeName("FILE");
     command.footer(
         "--tooth also takes an attempt or a session (.h5): the tooth as it was cut.\n"
         "Depth is positive inside, minus the distance outside; beyond 5 mm it is a bound and the normal is 0.\n"

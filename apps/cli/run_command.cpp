@@ -282,8 +282,8 @@ void addRunCommand(Command& app, const MethodRegistry& methods) {
         return command.option(name, value, std::move(help)).showDefault();
     };
     add("--motion", o.motion, motions + "; cuts: " + cutNames + "; or a CSV of t_s,x_mm,y_mm,z_mm,qw,qx,qy,qz");
-    command.option("--out", o.out, "folder for trace.csv, the plots and summary.json").required();
-    command.option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)");
+    command.option("--out", o.out, "folder for trace.csv, the plots and summary.json").required().typeName("FOLDER");
+    command.option("--sound", o.sound, "WAV file of what is heard, for headphones (48 kHz stereo)").typeName("FILE");
     addDeviceOptions(command, o.device);
     command.option("--inject", o.device.inject, "faults on purpose, \"unplug@2.5, stall@3:0.2\" or \"random:100\"")
         .group("Device");

@@ -37,8 +37,9 @@ int runSchoolProgram(int argc, const char* const* argv) {
 }
 
 void addSchoolCommands(Command& app) {
-    (void)app.subcommand("serve", "The school's server: takes what stations push, and scores it");
-    (void)app.subcommand("school", "A station's way to its school, and the server's books: handpiece school --help");
+    app.subcommand("serve", "The school's server: takes what stations push, and scores it").doneBy("handpiece-school");
+    app.subcommand("school", "A station's way to its school, and the server's books: handpiece school --help")
+        .doneBy("handpiece-school");
 }
 
 }  // namespace handpiece::cli

@@ -31,7 +31,7 @@ class Usage(SystemTest):
         for command in COMMANDS:
             lines = self.ok(*command, "--help").stdout.splitlines()
             for line, following in zip(lines, lines[1:] + [""]):
-                if not re.match(r"  (-\w,)?--[a-z]", line):
+                if not re.match(r"  (-\w, )?--[a-z]", line):
                     continue
                 options += 1
                 beside = len(line) > 34 and line[34] != " "

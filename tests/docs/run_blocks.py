@@ -15,9 +15,10 @@ A page has a folder of its own, in which its blocks run in their order, so that 
 Comments right before a block:
   <!-- not run: REASON -->       cannot run in a test; listed and counted
   <!-- nightly: REASON -->       too long for every change: with --all only (tools/nightly docs)
-  <!-- first: COMMAND -->        runs before it: makes what the page takes for granted
+  <!-- first: COMMAND -->        runs before it: makes what the page takes for granted; `tooth FOLDER` makes a small one
   <!-- check: COMMAND -->        how the product reads it; {} is the file of the block
   <!-- with: A => B -->          B stands in the place of A while it runs: a folder of the test for one of the system
+  <!-- small: A => B -->         likewise, a smaller one of the same; not with --all
   <!-- preamble: TEXT -->        what stands before a fragment of C++
 """
 import argparse
@@ -39,7 +40,7 @@ import tomllib
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FENCE = re.compile(r"^( *)(`{3,})\s*(\S*)\s*$")
-COMMENT = re.compile(r"^ *<!-- (not run|nightly|first|check|with|preamble): (.+) -->$")
+COMMENT = re.compile(r"^ *<!-- (not run|nightly|first|check|with|small|preamble): (.+) -->$")
 LANGUAGES = ("sh", "synopsis", "toml", "json", "python", "cpp", "csv", "text")
 
 
@@ -78,15 +79,15 @@ def blocks_of(path, name):
         else:
             if comments and lines[at].strip():
                 raise Wrong(f"{name}:{at}: a comment for a block, and no block after it")
-            if re.match(r"^ *<!-- *(not run|nightly|first|check|with|preamble)\b", lines[at]):
+            if re.match(r"^ *<!-- *(not run|nightly|first|check|with|small|preamble)\b", lines[at]):
                 raise Wrong(f"{name}:{at + 1}: a comment for a block without its text")
         at += 1
     return found
 
 
 class Runner:
-    def __init__(self, bin_folder, work, python):
-        self.bin, self.work = bin_folder, work
+    def __init__(self, bin_folder, work, everything, python):
+        self.bin, self.work, self.everything = bin_folder, work, everything
         self.helps, self.groups = {}, []
         self.environment = {key: value for key, value in os.environ.items() if not key.startswith("HANDPIECE")}
         self.environment.update(PATH=f"{bin_folder}:{os.environ['PATH']}", LC_ALL="C.UTF-8", PYTHONDONTWRITEBYTECODE="1")
@@ -100,6 +101,9 @@ class Runner:
         (self.folder / "run").mkdir(mode=0o700)
         (self.folder / "build/release").mkdir(parents=True)
         (self.folder / "build/release/bin").symlink_to(self.bin)
+        if (self.bin.parent / "doubles").exists():
+            (self.folder / "build/dev").mkdir()
+            (self.folder / "build/dev/doubles").symlink_to(self.bin.parent / "doubles")
         for name in ("examples", "data", "tests"):
             (self.folder / name).symlink_to(ROOT / name)
         self.environment.update(HOME=str(self.folder / "home"), XDG_CACHE_HOME=str(self.work / "cache"), XDG_CONFIG_HOME=str(self.folder / "home/config"),
@@ -117,7 +121,9 @@ class Runner:
     def shell(self, text):
         """Runs it as a page's reader would go on in one shell: variables stay, what was put behind goes on until the page's end."""
         state = self.folder / "home/state"
-        script = f"set -euo pipefail\nsource {shlex.quote(str(state))}\nset -a\n{text}\nset +a\nexport -p >{shlex.quote(str(state))}\n"
+        tooth = shlex.quote(str(self.work / "tooth"))
+        script = (f"tooth() {{ test -d {tooth} || handpiece make tooth --fdi 46 --seed 1 --faces 4000 --out {tooth}; test -d $1 || {{ mkdir -p $(dirname $1); cp -r {tooth} $1; }}; }}\n"
+                  f"set -euo pipefail\nsource {shlex.quote(str(state))}\nset -a\n{text}\nset +a\nexport -p >{shlex.quote(str(state))}\n")
         with open(self.folder / "home/said", "w+", encoding="utf-8") as said:
             process = subprocess.Popen(["bash", "-c", script], cwd=self.folder, env=self.environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said, start_new_session=True)
             self.groups.append(process.pid)
@@ -131,10 +137,10 @@ class Runner:
         if block.language not in LANGUAGES:
             raise Wrong(f"language '{block.language}': one of {', '.join(LANGUAGES)}")
         text = block.text
-        for change in block.told["with"]:
+        for change in block.told["with"] + ([] if self.everything else block.told["small"]):
             old, _, new = change.partition(" => ")
             if old not in text:
-                raise Wrong(f"with: '{old}' is not in the block")
+                raise Wrong(f"'{old}' is to be another while it runs, and is not in the block")
             text = text.replace(old, new)
         for command in block.told["first"]:
             self.shell(command)
@@ -172,7 +178,7 @@ class Runner:
     def python(self, _block, text):
         file = self.folder / "block.py"
         file.write_text(text)
-        self.shell("python3 block.py")
+        self.shell("/usr/bin/python3 block.py")
 
     def cpp(self, block, text):
         file = self.folder / f"block-{block.line}.cpp"
@@ -238,7 +244,7 @@ def main():
     pages = [pathlib.Path(p).resolve() for p in given.pages] or [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
     counted, wrong, spared, slow = collections.Counter(), [], [], []
     with tempfile.TemporaryDirectory(prefix="handpiece-docs-", ignore_cleanup_errors=True) as work:
-        runner = Runner(given.bin.resolve(), pathlib.Path(work), given.python)
+        runner = Runner(given.bin.resolve(), pathlib.Path(work), given.all, given.python)
         for path in pages:
             name = path.relative_to(ROOT).as_posix() if path.is_relative_to(ROOT) else path.name
             try:

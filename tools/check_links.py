@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds every relative link of the Markdown to a file and, with an anchor, to a heading of it; with a folder, every link of the site built there, which
+"""Holds every relative link of the Markdown to a file and, with an anchor, to a heading of it, and every page to a place in the site; with a folder, every link of the site built there, which
 must load nothing from elsewhere. Links to elsewhere are counted, or listed with --external; none is fetched.
 
     tools/check_links.py [SITE] [--external]"""
@@ -15,6 +15,10 @@ import unicodedata
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "docs/site"))
+sys.dont_write_bytecode = True
+import reading_order  # noqa: E402
+
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\)")
 BARE = re.compile(r"https?://[^\s<>()`\"'|]+[\w/]")
 
@@ -71,6 +75,7 @@ def markdown(breaches, external):
                     breaches.append(f"{name}:{number}: {target}: there is no such file")
                 elif anchor and (file.suffix != ".md" or anchor not in anchors(file)):
                     breaches.append(f"{name}:{number}: {target}: there is no such heading")
+    breaches += reading_order.order(ROOT, reading_order.pages(ROOT))[1]
     # What sources say of a page.
     for folder in ("src", "apps", "tests", "bench", "examples", "tools", "data"):
         for path in sorted((ROOT / folder).rglob("*")):
@@ -133,7 +138,7 @@ def site(folder, breaches, external):
             elif anchor and file in pages and anchor not in pages[file].names:
                 breaches.append(f"{name}: {target}: there is no such place")
     for path in sorted(folder.rglob("*.css")):
-        for address in re.findall(r"(?:url\(\s*|@import\s+)[\"']?((?:https?:)?//[^\"')\s]+)", path.read_text()):
+        for address in re.findall(r"(?:url\(\s*|@import\s+)[\"']?((?:https?:/)?/[^\"')\s]+)", path.read_text()):
             breaches.append(f"{path.relative_to(folder).as_posix()}: loads {address} from elsewhere")
     if not pages:
         breaches.append(f"{folder}: there is no page")

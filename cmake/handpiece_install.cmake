@@ -34,7 +34,7 @@ if(HANDPIECE_BUILD_CLI)
     # The pages as a site, where it was built: `cmake --build ... --target site` needs Sphinx and Doxygen.
     set(module "")
     if(TARGET handpiece_python)
-        set(module --python $<TARGET_FILE_DIR:handpiece_python>)
+        set(module --python $<TARGET_FILE_DIR:handpiece_python>/..)
     endif()
     add_custom_target(site COMMAND ${PROJECT_SOURCE_DIR}/tools/site ${PROJECT_BINARY_DIR}/site --program $<TARGET_FILE:handpiece> ${module} USES_TERMINAL VERBATIM)
     add_dependencies(site handpiece)

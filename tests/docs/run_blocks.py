@@ -8,7 +8,7 @@ A page has a folder of its own, in which its blocks run in their order, so that 
   sh         a script, every command of which must succeed; programs are those in FOLDER, as `handpiece` and as build/release/bin/handpiece
   synopsis   usage lines: each command is there, and its --help has each option
   toml json  read; by the product where a `check` says how
-  python     run
+  python     run by Debian's Python, the blocks of a page one after the other in one session
   cpp        compiled against the headers
   csv        read: rows of one length; by the product where a `check` says how
   text       drawings and listings: nothing to run
@@ -42,6 +42,19 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 FENCE = re.compile(r"^( *)(`{3,})\s*(\S*)\s*$")
 COMMENT = re.compile(r"^ *<!-- (not run|nightly|first|check|with|small|preamble): (.+) -->$")
 LANGUAGES = ("sh", "synopsis", "toml", "json", "python", "cpp", "csv", "text")
+
+# The session that a page's blocks of Python share: the names of files come in, a mark goes out after each.
+SESSION = """
+import sys, traceback
+names = {"__name__": "__main__"}
+for file in map(str.strip, sys.stdin):
+    try:
+        exec(compile(open(file).read(), file, "exec"), names)
+        print("\\n\\0done", flush=True)
+    except BaseException:
+        traceback.print_exc(file=sys.stdout)
+        print("\\n\\0failed", flush=True)
+"""
 
 
 class Wrong(Exception):
@@ -88,7 +101,7 @@ def blocks_of(path, name):
 class Runner:
     def __init__(self, bin_folder, work, everything, python):
         self.bin, self.work, self.everything = bin_folder, work, everything
-        self.helps, self.groups = {}, []
+        self.helps, self.groups, self.session = {}, [], None
         self.environment = {key: value for key, value in os.environ.items() if not key.startswith("HANDPIECE")}
         self.environment.update(PATH=f"{bin_folder}:{os.environ['PATH']}", LC_ALL="C.UTF-8", PYTHONDONTWRITEBYTECODE="1")
         if python:
@@ -116,7 +129,7 @@ class Runner:
                 os.killpg(group, signal.SIGTERM)
             except ProcessLookupError:
                 pass
-        self.groups = []
+        self.groups, self.session = [], None
 
     def shell(self, text):
         """Runs it as a page's reader would go on in one shell: variables stay, what was put behind goes on until the page's end."""
@@ -175,10 +188,24 @@ class Runner:
         if len({len(row) for row in rows}) != 1:
             raise Wrong("rows of several lengths")
 
-    def python(self, _block, text):
-        file = self.folder / "block.py"
+    def python(self, block, text):
+        file = self.folder / f"block-{block.line}.py"
         file.write_text(text)
-        self.shell("/usr/bin/python3 block.py")
+        if self.session is None:
+            self.session = subprocess.Popen(["/usr/bin/python3", "-u", "-c", SESSION], cwd=self.folder, env=self.environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
+                                            stderr=subprocess.STDOUT, text=True, start_new_session=True)
+            self.groups.append(self.session.pid)
+        self.session.stdin.write(f"{file}\n")
+        self.session.stdin.flush()
+        said = ""
+        for line in self.session.stdout:
+            if line == "\0done\n":
+                return
+            if line == "\0failed\n":
+                raise Wrong(said[-2000:])
+            said += line
+        self.session = None
+        raise Wrong("ends Python:\n" + said[-2000:])
 
     def cpp(self, block, text):
         file = self.folder / f"block-{block.line}.cpp"

@@ -30,15 +30,7 @@ if(HANDPIECE_BUILD_CLI)
         file(MAKE_DIRECTORY \"\${place}\")
         execute_process(COMMAND \"$<TARGET_FILE:handpiece>\" completion bash OUTPUT_FILE \"\${place}/handpiece\" COMMAND_ERROR_IS_FATAL ANY)
     " COMPONENT handpiece)
-    install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT handpiece PATTERN site EXCLUDE)
-    # The pages as a site, where it was built: `cmake --build ... --target site` needs Sphinx and Doxygen.
-    set(module "")
-    if(TARGET handpiece_python)
-        set(module --python $<TARGET_FILE_DIR:handpiece_python>/..)
-    endif()
-    add_custom_target(site COMMAND ${PROJECT_SOURCE_DIR}/tools/site ${PROJECT_BINARY_DIR}/site --program $<TARGET_FILE:handpiece> ${module} USES_TERMINAL VERBATIM)
-    add_dependencies(site handpiece)
-    install(DIRECTORY ${PROJECT_BINARY_DIR}/site/ DESTINATION ${share}/doc/handpiece/html COMPONENT doc OPTIONAL)
+    install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs/ DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT handpiece)
     install(FILES ${PROJECT_SOURCE_DIR}/README.md ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/LICENSE
             ${packaging}/debian/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT handpiece)
     # For an administrator to put in place; the package of Debian does that itself.

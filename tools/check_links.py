@@ -15,7 +15,7 @@ import unicodedata
 import urllib.parse
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "docs/site"))
+sys.path.insert(0, str(ROOT / "packaging/site"))
 sys.dont_write_bytecode = True
 import reading_order  # noqa: E402
 

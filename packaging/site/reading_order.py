@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Who reads what: docs/site/order.toml against the pages that there are."""
+"""Who reads what: packaging/site/order.toml against the pages that there are."""
 import pathlib
 import tomllib
 
@@ -12,7 +12,7 @@ def pages(root):
 
 def order(root, names):
     """Heading -> pages, and what is wrong. A star takes the pages of its folder that are not named elsewhere."""
-    table = tomllib.loads((root / "docs/site/order.toml").read_text())
+    table = tomllib.loads((root / "packaging/site/order.toml").read_text())
     named = {entry for entries in table.values() for entry in entries if "*" not in entry}
     told, left, faults = {}, set(names), []
     for heading, entries in table.items():
@@ -23,7 +23,7 @@ def order(root, names):
             told[heading] += matching
             left -= set(matching)
             # The references are written when the site is built.
-            faults += [f"docs/site/order.toml names {name}, and there is no such page" for name in matching if name not in names and not name.endswith("/index")]
+            faults += [f"packaging/site/order.toml names {name}, and there is no such page" for name in matching if name not in names and not name.endswith("/index")]
     if left:
-        faults.append(f"docs/site/order.toml does not say who reads {', '.join(sorted(left))}")
+        faults.append(f"packaging/site/order.toml does not say who reads {', '.join(sorted(left))}")
     return told, faults

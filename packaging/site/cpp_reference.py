@@ -31,9 +31,12 @@ WARN_FORMAT = "$file:$line: $text"
 
 
 def rooms(root):
-    """Room -> its public headers, from the handpiece_room() calls."""
+    """Room -> its public headers, from the handpiece_room() calls, lowest first as the build has them."""
     found = {}
-    for path in sorted((root / "src/handpiece").glob("*/*/CMakeLists.txt")):
+    for room in re.findall(r"\b[a-z]+/[a-z_]+\b", (root / "CMakeLists.txt").read_text()):
+        path = root / "src/handpiece" / room / "CMakeLists.txt"
+        if not path.exists():
+            continue
         call = re.search(r"handpiece_room\((\S+)\s+HEADERS\s+(.*?)\s+(?:SOURCES|USES|THIRD_PARTY|\))", path.read_text() + " )", re.S)
         if call:
             found[call.group(1)] = call.group(2).rstrip(")").split()
@@ -217,11 +220,12 @@ def write(root, out, work):
                 page.append(reference.members([m for m in public_members(thing)]))
             page.append(reference.members(loose))
         (out / f"{page_of(room)}.md").write_text("\n".join(part for part in page if part))
-        wings[wing].append((page_of(room), name, len(headers)))
+        wings[wing].append((page_of(room), name, ", ".join(header.removesuffix(".h") for header in headers)))
     index = ["# C++ reference\n", "The public headers of the library, room by room ([who may use whom](../ARCHITECTURE.md#who-may-include-whom)); namespaces are within `handpiece`. "
              "A program links what it uses: `find_package(handpiece)`, then `handpiece::contact` and so on "
              "([a whole program](../tests/consumer/main.cpp)).\n"]
     for wing, pages in wings.items():
-        index.append(f"## {wing}\n\n```{{toctree}}\n:maxdepth: 1\n\n" + "\n".join(page for page, _, _ in pages) + "\n```\n")
+        index.append(f"## {wing}\n\n" + "\n".join(f'<p><a href="{page}.html"><b>{name}</b></a>: {held}</p>' for page, name, held in pages)
+                     + "\n\n```{toctree}\n:hidden:\n\n" + "\n".join(page for page, _, _ in pages) + "\n```\n")
     (out / "index.md").write_text("\n".join(index))
     return complaints

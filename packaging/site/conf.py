@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Sphinx over the pages that tools/site lays out (which says where); called by it alone."""
 import os
+import re
 
 from pygments.lexers.special import TextLexer
 
@@ -17,6 +18,7 @@ if os.environ.get("SITE_PYTHON"):
     extensions += ["sphinx.ext.autodoc", "sphinx.ext.napoleon"]
     autodoc_member_order = "groupwise"
     autodoc_typehints = "signature"
+    napoleon_use_ivar = True
 root_doc = "index"
 source_suffix = {".md": "markdown"}
 # Headings have the names that a forge gives them, so that a link is good here and there.
@@ -52,7 +54,17 @@ def tell_language(_app, page, _template, context, _tree):
         context["language"] = "ja"
 
 
+def as_imported(_app, _what, _name, _thing, _options, signature, returns):
+    """Names as one imports them, and no type of one's self."""
+    def short(text):
+        return text and re.sub(r"\bself: [\w.]+", "self", text).replace("handpiece._core.", "handpiece.")
+
+    return short(signature), short(returns)
+
+
 def setup(app):
+    if "sphinx.ext.autodoc" in extensions:
+        app.connect("autodoc-process-signature", as_imported)
     app.connect("html-page-context", tell_language)
     for fence in ("synopsis", "csv"):
         app.add_lexer(fence, TextLexer)

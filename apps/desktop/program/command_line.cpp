@@ -91,7 +91,7 @@ QString usage() {
         "  --layout practice|laboratory|paper   which panels are shown\n"
         "  --language en|ja                     the language of this start\n"
         "  --device NAME                        what holds the handpiece: mouse, or a name of handpiece device list\n"
-        "  --inject FAULTS                      faults of that device on purpose (docs/devices.md#faults)\n"
+        "  --inject FAULTS                      faults of that device on purpose (docs/devices/safety.md#faults)\n"
         "  --rate HZ                            ticks a second: 1000, 2000, 4000 or 8000 (1000)\n"
         "  --no-realtime                        do not ask for real-time scheduling\n"
         "  --no-sound                           silent\n"

@@ -12,7 +12,7 @@ namespace handpiece::marking {
 
 enum class Naming { codesOnly, withFiles };
 
-/// A line a work (docs/marking.md#results-csv): final score and machine's beside each other, then for each criterion
+/// A line a work (docs/marking.md#resultscsv): final score and machine's beside each other, then for each criterion
 /// points and band, the machine's, the reason. What is hidden yet is empty.
 [[nodiscard]] std::string resultsCsv(const Desk& desk, Naming naming);
 

@@ -25,7 +25,7 @@ struct AssessmentPictures {
     struct View {
         std::string name;  ///< "occlusal", "buccal", ...; "section-mesial" and "section-buccal" are cut open
         Png own, ideal, deviation;
-        std::string outlines;  ///< of a section: own and ideal as lines, one <svg>; needs no OpenGL
+        std::string outlines;  ///< of a section: own and ideal as lines, one `<svg>`; needs no OpenGL
     };
     std::vector<View> views;
     std::map<std::string, Png> places;  ///< by criterion: where its value was measured, the eye turned there

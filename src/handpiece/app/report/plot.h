@@ -40,7 +40,7 @@ struct Plot {
     int width = 760, height = 340;
 };
 
-/// The plot as one <svg> element. `standalone` puts the style inside, for a file of its own; a page that holds many
+/// The plot as one `<svg>` element. `standalone` puts the style inside, for a file of its own; a page that holds many
 /// carries svgStyle() once instead. Series longer than the plot is wide are drawn by the least and greatest value of
 /// each pixel column. Values that are not finite leave gaps.
 [[nodiscard]] std::string toSvg(const Plot& plot, bool standalone);
@@ -54,7 +54,7 @@ struct Histogram {
 [[nodiscard]] Histogram histogramSvg(const std::vector<double>& counts, std::string_view title, std::string_view xLabel,
                                      bool fromZero);
 
-/// The style sheet of all pictures, without the <style> tags.
+/// The style sheet of all pictures, without the `<style>` tags.
 [[nodiscard]] std::string_view svgStyle();
 
 /// For text inside XML.

@@ -17,7 +17,7 @@ class Error : public std::exception {
     /// @param remedy  what the person can do; may be empty.
     Error(std::string what, std::string where = {}, std::string remedy = {});
     /// Names what a program may tell in another language: throw Error(...).as("no-space", {reason}). The window's table
-    /// of them is apps/desktop/shell/problem.cpp.
+    /// of them is apps/desktop/framework/problem.cpp.
     [[nodiscard]] Error as(std::string id, std::vector<std::string> arguments = {}) &&;
 
     /// "where: what (remedy)" on one line.

@@ -3,7 +3,7 @@
 /// @file
 /// Sine and its kin with the same bits on every machine. The C library's differ from one library, version and processor
 /// to the next, so whatever a hash, a mesh, a table, a force or a score rests on takes these (tools/check_math.py).
-/// They are made of + - * / and sqrt, which IEEE 754 rounds exactly, and of integers. What <cmath> has that is exact
+/// They are made of + - * / and sqrt, which IEEE 754 rounds exactly, and of integers. What `<cmath>` has that is exact
 /// may be used beside them: sqrt, floor, ceil, trunc, round, lround, nearbyint, fmod, fma, abs, copysign, ldexp, frexp.
 ///
 /// Errors are in units of the last place of the exact result, held against MPFR by portable_math_test. Special values

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// How hard is hard: what a load on the bur is called, by what turns the bur. docs/physics.md#load says why.
+/// What a load on the bur is called, by what turns the bur; why: docs/physics.md#what-a-load-is-called.
 
 #include <string_view>
 

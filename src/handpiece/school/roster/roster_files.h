@@ -21,7 +21,7 @@ namespace handpiece::school {
 [[nodiscard]] Roster peopleList(std::string_view bytes, const std::string& where);
 
 /// manifest.csv and the tables that it names, by their names. Of the roles student, teacher and administrator are read.
-/// @param today  "2026-11-27": enrolments have days on which they begin and end.
+/// `today` is "2026-11-27": enrolments have days on which they begin and end.
 /// Throws core::Error "list-unfit" with file, line and column.
 [[nodiscard]] Roster oneRoster(const std::map<std::string, std::vector<std::byte>>& files, const std::string& where,
                                const std::string& today);

@@ -149,7 +149,7 @@ struct BookTable {
     std::vector<std::string> columns;
     std::vector<std::vector<std::string>> rows;
 };
-/// One line a row, tabs between, tab, line's end and backslash escaped as \t \n \r \\.
+/// One line a row, tabs between, tab, line's end and backslash escaped as `\t` `\n` `\r` `\\`.
 [[nodiscard]] std::string asText(const std::vector<BookTable>& tables);
 
 /// SQLite in `data`, or PostgreSQL; the same answers from both. One thread each; any number of them, in any number of
@@ -165,8 +165,8 @@ class Books {
     /// A job that so many workers took and none gave back is given up.
     static constexpr int kMostTurns = 5;
 
-    /// @param data     the server's folder, made where it is not there: books.db, files, uploads
-    /// @param address  empty: SQLite in `data`; else postgresql://...
+    /// In the server's folder `data`, made where it is not there: books.db, files, uploads. `address` empty: SQLite in
+    /// it; else postgresql://... `patience`: how long one waits for another who writes.
     explicit Books(const std::filesystem::path& data, const std::string& address = {},
                    std::chrono::milliseconds patience = std::chrono::seconds(10));
     ~Books();
@@ -223,7 +223,7 @@ class Books {
     bool push(const PushedAttempt& attempt);
     bool push(const Judgement& judgement);
     bool push(const Comment& comment);
-    /// Of files that came whole and proven the books know. As ContentFiles::received, ::append.
+    /// Of files that came whole and proven the books know. As ContentFiles::received() and append().
     [[nodiscard]] std::uint64_t received(const Upload& upload, Milliseconds now);
     bool append(const Upload& upload, std::uint64_t offset, std::span<const std::byte> piece, Milliseconds now);
     [[nodiscard]] const ContentFiles& files() const;

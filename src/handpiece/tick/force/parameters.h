@@ -71,7 +71,7 @@ struct Parameters {
     ContactTransients transients;  ///< felt, but no part of the load that cuts
     CuttingVibration vibration;    ///< likewise
 };
-/// docs/physics.md#force and #tissues.
+/// docs/physics.md#force and docs/physics.md#tissues.
 [[nodiscard]] Parameters defaultParameters(const cases::TissueTable& tissues = cases::builtInTissues());
 /// Throws core::Error naming the value that is not finite or out of range.
 void validate(const Parameters& parameters);

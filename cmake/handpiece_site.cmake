@@ -1,0 +1,11 @@
+# README, docs and the references as a site: `cmake --build ... --target site` needs Sphinx and Doxygen; installed where it was built.
+set(module "")
+if(TARGET handpiece_python)
+    set(module --python $<TARGET_FILE_DIR:handpiece_python>/..)
+endif()
+add_custom_target(site COMMAND ${PROJECT_SOURCE_DIR}/tools/site ${PROJECT_BINARY_DIR}/site --program $<TARGET_FILE:handpiece> ${module} USES_TERMINAL VERBATIM)
+add_dependencies(site handpiece)
+if(TARGET handpiece_python)
+    add_dependencies(site handpiece_python)
+endif()
+install(DIRECTORY ${PROJECT_BINARY_DIR}/site/ DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/handpiece/html COMPONENT doc OPTIONAL)

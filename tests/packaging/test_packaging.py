@@ -28,6 +28,7 @@ COMPONENTS = {
     "school": ("handpiece-school", 40, ["bin/handpiece-school", PAGES + "/handpiece-school*.1", PAGES + "/handpiece-serve.1",
                                         *(c.format("handpiece-school") for c in COMPLETION)]),
     "dev": ("libhandpiece-dev", 400, ["include/handpiece/*.h", "lib/*libhandpiece_*.a", "lib/*cmake/handpiece/*.cmake"]),
+    "python": ("python3-handpiece", 20, ["lib/python3/dist-packages/handpiece/*", "share/doc/python3-handpiece/examples/*.py"]),
     "doc": ("handpiece-doc", 40, ["share/doc/handpiece-doc/*"]),
     "archive": (None, 1, ["share/doc/handpiece/*", "share/handpiece/system/*"]),
 }

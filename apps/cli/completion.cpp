@@ -58,14 +58,19 @@ std::string allPaths(const std::vector<Level>& levels) {
     return paths;
 }
 
-std::string bash(const std::string& program, const std::vector<Level>& levels) {
-    const std::string function = functionOf(program);
-    std::string text = fmt::format(
-        "{}() {{\n    local at=\"\" word words=\"\"\n"
-        "    for word in \"${{COMP_WORDS[@]:1:COMP_CWORD-1}}\"; do\n"
+/// In bash and zsh: which command stands in `words`, and a branch for each.
+std::string branches(const std::string& words, const std::vector<Level>& levels) {
+    return fmt::format(
+        "    for word in \"{}\"; do\n"
         "        case '{}' in *\"|${{at:+$at }}$word|\"*) at=\"${{at:+$at }}$word\" ;; esac\n    done\n"
         "    case \"$at\" in\n",
-        function, allPaths(levels));
+        words, allPaths(levels));
+}
+
+std::string bash(const std::string& program, const std::vector<Level>& levels) {
+    const std::string function = functionOf(program);
+    std::string text =
+        function + "() {\n    local at=\"\" word words=\"\"\n" + branches("${COMP_WORDS[@]:1:COMP_CWORD-1}", levels);
     for (const Level& level : levels) {
         text += fmt::format("        '{}') words='", level.path);
         for (const auto* const list : {&level.commands, &level.options})
@@ -84,12 +89,7 @@ std::string bash(const std::string& program, const std::vector<Level>& levels) {
 
 std::string zsh(const std::string& program, const std::vector<Level>& levels) {
     std::string function = "_" + program, text = fmt::format("#compdef {}\n\n{}() {{\n", program, function);
-    text += fmt::format(
-        "    local at='' word\n    local -a commands options\n"
-        "    for word in \"${{(@)words[2,CURRENT-1]}}\"; do\n"
-        "        case '{}' in *\"|${{at:+$at }}$word|\"*) at=\"${{at:+$at }}$word\" ;; esac\n    done\n"
-        "    case \"$at\" in\n",
-        allPaths(levels));
+    text += "    local at='' word\n    local -a commands options\n" + branches("${(@)words[2,CURRENT-1]}", levels);
     for (const Level& level : levels) {
         text += fmt::format("        '{}')\n", level.path);
         for (const auto& [name, list] :

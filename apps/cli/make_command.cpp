@@ -14,6 +14,7 @@
 #include "handpiece/model/lesion/lesion.h"
 #include "handpiece/model/starter/paper.h"
 #include "handpiece/model/starter/starter.h"
+#include "studies/made_tooth.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -46,18 +47,11 @@ void makeTooth(const MakeOptions& o) {
                           "leave one of --fdi and --scene out");
     studies::ProgressBar bar("making the tooth");
     const std::vector<lesion::Lesion> lesions = lesion::lesionsByName(o.lesions);
-    cases::Case made;
-    if (o.fdi != 0)
-        static_cast<cases::Tooth&>(made) =
-            dentition::makeTooth(o.fdi, o.patient, {o.faces, o.partFaces}, bar.listener());
-    else
-        made = starter::makeTooth(starter::toothKindByName(o.kind), {o.faces, o.partFaces, o.scene}, bar.listener());
+    cases::Case made = studies::makeTooth({o.kind, o.fdi, o.patient, {o.faces, o.partFaces, o.scene}}, bar.listener());
     bar.finish();
     if (!lesions.empty()) {
-        // In place of the one that a starter tooth comes with.
-        std::erase_if(made.parts, [](const cases::Part& part) { return cases::isCarious(part.tissue); });
         studies::ProgressBar lesionBar("making its lesions");
-        lesion::addLesions(made, lesions, {.seed = o.patient.seed}, lesionBar.listener());
+        studies::replaceLesions(made, lesions, o.patient.seed, lesionBar.listener());
         lesionBar.finish();
     }
     cases::writeCase(made, o.out);

@@ -8,7 +8,7 @@
 namespace handpiece::python {
 namespace {
 
-constexpr double kUnitTolerance = 1e-3, kRotationTolerance = 1e-6;
+constexpr double kRotationTolerance = 1e-6;
 
 std::string shapeOf(const py::array& array) {
     std::string text;
@@ -62,8 +62,6 @@ py::array_t<double, py::array::c_style> numbersFrom(const py::handle& given, con
     if (!array) PyErr_Clear();
     if (kind != 'f' && kind != 'i' && kind != 'u')
         throw py::type_error(fmt::format("{} must be an array of real numbers", name));
-    // NumPy hands on memory that is not aligned as it is, unless it is asked.
-    constexpr int kDense = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
     return py::array_t<double, kDense>(array);
 }
 

@@ -15,6 +15,11 @@ namespace handpiece::python {
 
 namespace py = pybind11;
 
+/// How far a quaternion's or a normal's length may be off 1.
+inline constexpr double kUnitTolerance = 1e-3;
+/// NumPy hands on memory that is not aligned as it is, unless it is asked.
+inline constexpr int kDense = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
+
 /// Dense numbers of any array-like of numbers. TypeError for what is none.
 [[nodiscard]] py::array_t<double, py::array::c_style> numbersFrom(const py::handle& given, const char* name);
 /// (n, 3), finite; a single (3,) counts as one. TypeError, ValueError.

@@ -31,6 +31,8 @@ struct Tooth {
     std::shared_ptr<const tooth::ToothState> cut{};
     [[nodiscard]] const field::DistanceField& field() const { return cut ? cut->field() : model->field; }
 };
+/// Of the state that a file holds.
+[[nodiscard]] Tooth cutTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state);
 struct Field {
     Tooth of;
 };

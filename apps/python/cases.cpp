@@ -4,12 +4,11 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/dentition/mouth.h"
-#include "handpiece/model/dentition/tooth_form.h"
 #include "handpiece/model/lesion/lesion.h"
-#include "handpiece/model/starter/starter.h"
 #include "python/arrays.h"
 #include "python/bind.h"
 #include "python/long_work.h"
+#include "studies/made_tooth.h"
 
 namespace handpiece::python {
 namespace {
@@ -69,16 +68,8 @@ Case makeTooth(const std::string& kind, int fdi, std::uint64_t seed, double ageY
         const std::vector<lesion::Lesion> wanted = lesion::lesionsByName(lesions);
         const core::Progress told = work.listener();
         const core::Progress making = core::part(told, 0.0, wanted.empty() ? 1.0 : 0.7);
-        cases::Case made;
-        if (fdi != 0)
-            static_cast<cases::Tooth&>(made) = dentition::makeTooth(fdi, {seed, ageYears}, {faces, partFaces}, making);
-        else
-            made = starter::makeTooth(starter::toothKindByName(kind), {faces, partFaces, scene}, making);
-        if (!wanted.empty()) {
-            // In place of the one that a starter tooth comes with.
-            std::erase_if(made.parts, [](const cases::Part& part) { return cases::isCarious(part.tissue); });
-            lesion::addLesions(made, wanted, {.seed = seed}, core::part(told, 0.7, 1.0));
-        }
+        cases::Case made = studies::makeTooth({kind, fdi, {seed, ageYears}, {faces, partFaces, scene}}, making);
+        studies::replaceLesions(made, wanted, seed, core::part(told, 0.7, 1.0));
         return caseOf(std::move(made));
     });
 }

@@ -9,7 +9,6 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/contact/hull/hull_method.h"
 #include "python/arrays.h"
 #include "python/bind.h"
 #include "python/long_work.h"
@@ -47,18 +46,14 @@ class Contact {
             return;
         }
         name_ = method.cast<std::string>();
-        if (name_ == "field")
-            make_ = [t, b] {
-                return t.cut ? contact::makeFieldMethod(t.cut, b) : contact::makeFieldMethod(t.model, b);
-            };
-        else if (name_ == "hull" && !t.cut)
-            make_ = [t, b] { return contact::makeHullMethod(t.model->outer, b->mesh()); };
-        else if (name_ == "hull")
+        requireMethod(name_);
+        if (!t.cut)
+            make_ = [t, b, name = name_] { return makeMethod(name, t.model, b); };
+        else if (name_ == "field")
+            make_ = [t, b] { return contact::makeFieldMethod(t.cut, b); };
+        else
             throw core::Error("a tooth that was cut is felt by the method \"field\" alone", "method",
                               "leave it out, or prepare the case");
-        else
-            throw core::Error(fmt::format("there is no contact method called \"{}\"", name_), "method",
-                              "choose one of field, hull, or give one of your own");
         const py::gil_scoped_release released;
         idle_.push_back(make_());  // what cannot be made is told here
     }

@@ -30,7 +30,6 @@ Mesh makeMesh(const py::object& vertices, const py::object& faces) {
     if (!given || (given.dtype().kind() != 'i' && given.dtype().kind() != 'u'))
         throw py::type_error("faces must be an array of whole numbers");
     if (given.ndim() != 2 || given.shape(1) != 3) throw py::value_error("faces must have the shape (n, 3)");
-    constexpr int kDense = py::array::c_style | py::array::forcecast | py::detail::npy_api::NPY_ARRAY_ALIGNED_;
     const py::array_t<long long, kDense> numbers(given);
     mesh.triangles.resize(static_cast<std::size_t>(numbers.shape(0)));
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i)

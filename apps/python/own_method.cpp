@@ -6,12 +6,13 @@
 #include <cmath>
 #include <vector>
 
+#include "handpiece/base/core/error.h"
+#include "handpiece/tick/contact/field_method.h"
+#include "handpiece/tick/contact/hull/hull_method.h"
 #include "python/arrays.h"
 
 namespace handpiece::python {
 namespace {
-
-constexpr double kUnitTolerance = 1e-3;
 
 class OwnMethod final : public contact::Method {
   public:
@@ -97,6 +98,20 @@ class OwnMethod final : public contact::Method {
 };
 
 }  // namespace
+
+void requireMethod(const std::string& name) {
+    if (name != "field" && name != "hull")
+        throw core::Error(fmt::format("there is no contact method called \"{}\"", name), "method",
+                          "choose one of field, hull, or give one of your own");
+}
+
+std::unique_ptr<contact::Method> makeMethod(const std::string& name,
+                                            const std::shared_ptr<const tooth::ToothModel>& tooth,
+                                            const std::shared_ptr<const instrument::Bur>& bur) {
+    requireMethod(name);
+    if (name == "field") return contact::makeFieldMethod(tooth, bur);
+    return contact::makeHullMethod(tooth->outer, bur->mesh());
+}
 
 std::string nameOfOwn(const py::object& own) {
     if (py::hasattr(own, "name") && py::isinstance<py::str>(own.attr("name")))

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// A contact method written in Python, for whoever calls a contact::Method.
+/// Contact methods: ours by their names, and one written in Python for whoever calls a contact::Method.
 
 #include <pybind11/pybind11.h>
 
@@ -9,6 +9,8 @@
 #include <memory>
 #include <string>
 
+#include "handpiece/model/instrument/bur.h"
+#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/tick/contact/method.h"
 
 namespace handpiece::python {
@@ -27,6 +29,12 @@ struct OwnProblem {
 /// the force at zero. `withNormal`: a depth alone will not do. Throws TypeError where there is nothing to call.
 [[nodiscard]] std::unique_ptr<contact::Method> makeOwnMethod(const py::object& own, bool withNormal,
                                                              std::shared_ptr<OwnProblem> problem);
+/// "field" or "hull", of an uncut tooth. Throws core::Error for a name there is not.
+[[nodiscard]] std::unique_ptr<contact::Method> makeMethod(const std::string& name,
+                                                          const std::shared_ptr<const tooth::ToothModel>& tooth,
+                                                          const std::shared_ptr<const instrument::Bur>& bur);
+/// As makeMethod() does, before there is a tooth.
+void requireMethod(const std::string& name);
 /// What it calls itself: its attribute `name`, or its class.
 [[nodiscard]] std::string nameOfOwn(const py::object& own);
 

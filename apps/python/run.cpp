@@ -5,8 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/base/core/error.h"
-#include "handpiece/tick/contact/field_method.h"
-#include "handpiece/tick/contact/hull/hull_method.h"
 #include "python/bind.h"
 #include "python/long_work.h"
 #include "python/own_method.h"
@@ -183,13 +181,9 @@ py::tuple runHand(const py::dict& given, const py::object& method, const std::st
         // Made here, with Python's lock.
         auto own = std::make_shared<std::unique_ptr<contact::Method>>(makeOwnMethod(method, true, problem));
         make = [own](auto, auto) { return std::move(*own); };
-    } else if (name == "field") {
-        make = [](auto tooth, auto bur) { return contact::makeFieldMethod(std::move(tooth), std::move(bur)); };
-    } else if (name == "hull") {
-        make = [](auto tooth, auto bur) { return contact::makeHullMethod(tooth->outer, bur->mesh()); };
     } else {
-        throw core::Error(fmt::format("there is no contact method called \"{}\"", name), "method",
-                          "choose one of field, hull, or give one of your own");
+        requireMethod(name);
+        make = [name](const auto& tooth, const auto& bur) { return makeMethod(name, tooth, bur); };
     }
     const bool cuts = studies::isCut(o);
     if (cuts && name != "field")

@@ -96,10 +96,7 @@ Tooth toothAt(Session& s, std::optional<double> timeS, const py::object& progres
     LongWork work(progress);
     return work.run([&] {
         const auto cut = simulation::readCutTeeth(s.path(), timeS, true, work.listener());
-        const std::shared_ptr<const tooth::ToothModel>& model = cut->teeth.at(0);
-        const auto field = std::make_shared<tooth::ToothState>(model);
-        (void)field->restore(cut->state, 0, cut->state.bricks.size());
-        return Tooth{model, field};
+        return cutTooth(cut->teeth.at(0), cut->state);
     });
 }
 

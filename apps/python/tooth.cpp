@@ -21,12 +21,6 @@ namespace {
 constexpr double kLeastVoxelMm = 0.01, kMostVoxelMm = 0.4;
 constexpr std::size_t kGrain = 1024;
 
-Tooth toothOf(const simulation::ToothOfFile& found) {
-    const auto cut = std::make_shared<tooth::ToothState>(found.base);
-    (void)cut->restore(found.state, 0, found.state.bricks.size());
-    return {found.base, cut};
-}
-
 Tooth prepare(const py::object& what, double voxelMm, bool cache, const py::object& progress) {
     if (!(voxelMm >= kLeastVoxelMm && voxelMm <= kMostVoxelMm))
         throw core::Error(fmt::format("a voxel of {} mm", voxelMm), "voxel_mm", "give 0.01 to 0.4 mm");
@@ -43,8 +37,10 @@ Tooth prepare(const py::object& what, double voxelMm, bool cache, const py::obje
     const std::string path = pathFrom(what);
     return work.run([&] {
         const bool isSession = std::filesystem::path(path).extension() == ".h5";
-        if (isSession || (core::isThere(path) && cases::isAttempt(path)))
-            return toothOf(simulation::toothOf(path, voxelMm, cache, work.listener()));
+        if (isSession || (core::isThere(path) && cases::isAttempt(path))) {
+            const simulation::ToothOfFile found = simulation::toothOf(path, voxelMm, cache, work.listener());
+            return cutTooth(found.base, found.state);
+        }
         return Tooth{tooth::loadModel(cases::readCase(path), settings, work.listener()), {}};
     });
 }
@@ -190,6 +186,12 @@ void bindBur(py::module_& module) {
 }
 
 }  // namespace
+
+Tooth cutTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth::StateDelta& state) {
+    const auto cut = std::make_shared<tooth::ToothState>(model);
+    (void)cut->restore(state, 0, state.bricks.size());
+    return {std::move(model), cut};
+}
 
 Bur burFrom(const py::object& bur) {
     if (py::isinstance<Bur>(bur)) return bur.cast<Bur>();

@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <memory>
@@ -46,9 +45,6 @@ struct ExamOptions {
     std::string candidate, invigilator, out, receipt, key;
     double everyS = 30.0;
 };
-
-std::atomic<bool> terminated{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
 
 school::Act now() {
     return {"server", school_server::systemClock()()};
@@ -137,14 +133,13 @@ void sign(const ExamOptions& o) {
 void serve(const ExamOptions& o) {
     school_exam::ExamServiceSettings settings{o.service, o.socket};
     school_exam::ExamService service(settings);
-    std::signal(SIGTERM, [](int) { terminated = true; });
+    listenForEnd();
     tellManager("READY=1");
     fmt::print("{} (Ctrl-C ends it)\n", o.socket);
     (void)std::fflush(stdout);
     std::atomic<bool> ended{false};
     std::thread ending([&] {
-        while (!studies::cancelled() && !terminated && !ended)
-            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        waitForEnd(ended);
         tellManager("STOPPING=1");
         service.stop();
     });

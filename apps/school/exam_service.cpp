@@ -38,6 +38,10 @@ using httplib::Response;
 constexpr std::size_t kMostRecording = std::size_t{1} << 30;
 constexpr const char* kReceipt = "receipt.txt";
 
+std::string textOf(const std::vector<std::byte>& bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
 /// Held while the service lives; the system lets it go with the process.
 class OneService {
   public:
@@ -103,8 +107,7 @@ struct ExamService::State {
                      if (!exams.sitting())
                          throw core::Error("nobody is at an exam here", settings.folder.string(), "begin it")
                              .as("exam-none", {""});
-                     const std::vector<std::byte> bytes = core::readFile(exams.sitting()->exam.exercise);
-                     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                     return textOf(core::readFile(exams.sitting()->exam.exercise));
                  }));
         http.Post("/look", on([this](const Request& r) {
                       const exam::Sitting sitting = exams.look(field(r, "candidate"), exam::kRubricFormat, clock());
@@ -128,8 +131,7 @@ struct ExamService::State {
                      const std::string id = field(r, "sitting");
                      const fs::path file = settings.folder / "sessions" / id / kReceipt;
                      if (!school::isHex(id, 32) || !core::isThere(file)) return std::string();
-                     const std::vector<std::byte> bytes = core::readFile(file, 1 << 20);
-                     return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+                     return textOf(core::readFile(file, 1 << 20));
                  }));
         http.Post("/begin", on([this](const Request& r) {
                       (void)exams.begin(field(r, "candidate"), field(r, "invigilator"), field(r, "pin"),

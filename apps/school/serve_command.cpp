@@ -4,7 +4,6 @@
 
 #include <atomic>
 #include <charconv>
-#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <cstring>
@@ -29,14 +28,6 @@ struct ServeOptions {
     bool worker = false;
 };
 
-std::atomic<bool> terminated{false};
-static_assert(std::atomic<bool>::is_always_lock_free);
-
-void waitForInterrupt(const std::atomic<bool>& ended) {
-    while (!studies::cancelled() && !terminated && !ended)
-        std::this_thread::sleep_for(std::chrono::milliseconds(100));
-}
-
 std::string secretIn(const std::string& file) {
     const std::vector<std::byte> bytes = core::readFile(file, 4096);
     std::string secret(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -50,7 +41,7 @@ std::string secretIn(const std::string& file) {
 
 void serve(const ServeOptions& asked) {
     std::atomic<bool> ended{false};
-    std::signal(SIGTERM, [](int) { terminated = true; });
+    listenForEnd();
     const SchoolSettings o = settled(asked.given, ownEnvironment());
     if (asked.worker) {
         school_server::Worker worker({o.data, o.database}, school_server::systemClock());
@@ -58,7 +49,7 @@ void serve(const ServeOptions& asked) {
         tellManager("READY=1");
         fmt::print("works for {} (Ctrl-C ends it)\n", o.database.empty() ? o.data : o.database);
         (void)std::fflush(stdout);
-        waitForInterrupt(ended);
+        waitForEnd(ended);
         tellManager("STOPPING=1");
         worker.stop();
         return;
@@ -93,7 +84,7 @@ void serve(const ServeOptions& asked) {
     // The port is open: who comes now waits for run().
     tellManager("READY=1");
     std::thread ending([&] {
-        waitForInterrupt(ended);
+        waitForEnd(ended);
         tellManager("STOPPING=1");
         server.stop();
     });

@@ -6,12 +6,23 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <thread>
+
+#include "studies/progress_bar.h"
 
 namespace handpiece::school_cli {
+namespace {
+
+std::atomic<bool> terminated{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+}  // namespace
 
 void tellManager(const char* state) {
     const char* const address = std::getenv("NOTIFY_SOCKET");
@@ -28,6 +39,15 @@ void tellManager(const char* state) {
                static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + length)) < 0)
         std::fprintf(stderr, "handpiece-school: the service manager does not hear: %s\n", std::strerror(errno));
     close(line);
+}
+
+void listenForEnd() {
+    std::signal(SIGTERM, [](int) { terminated = true; });
+}
+
+void waitForEnd(const std::atomic<bool>& ended) {
+    while (!studies::cancelled() && !terminated && !ended)
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
 }
 
 }  // namespace handpiece::school_cli

@@ -36,10 +36,7 @@ Line lineTo(const Enrolment& e) {
 /// Against the server's; 0: they agree to a minute, or the server is an older one.
 school::Milliseconds clockAheadOf(const school_wire::Status& there) {
     constexpr school::Milliseconds kAgrees = 60'000;
-    const school::Milliseconds now = std::chrono::duration_cast<std::chrono::milliseconds>(
-                                         std::chrono::system_clock::now().time_since_epoch())
-                                         .count(),
-                               ahead = now - there.now;
+    const school::Milliseconds ahead = clockNow() - there.now;
     return there.now == 0 || std::abs(ahead) < kAgrees ? 0 : ahead;
 }
 
@@ -170,6 +167,11 @@ Enrolment enrol(const std::string& server, const std::string& code, const std::s
 Pushed push(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file,
             const core::Progress& progress) {
     return Pusher(store, sessions, enrolment, file).run(progress);
+}
+
+school::Milliseconds clockNow() {
+    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
+        .count();
 }
 
 std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment) {

@@ -44,6 +44,8 @@ struct Pushed {
 Pushed push(school::Store& store, const std::filesystem::path& sessions, Enrolment& enrolment,
             const std::filesystem::path& file, const core::Progress& progress = {});
 
+/// By this computer's clock.
+[[nodiscard]] school::Milliseconds clockNow();
 /// How much of the outbox the server has not heard of yet.
 [[nodiscard]] std::size_t waitingIn(const school::Store& store, const Enrolment& enrolment);
 /// What its person has to do; times by this computer's clock, which may be wrong.

@@ -18,11 +18,6 @@ constexpr auto kLivePatience = 5s;
 /// After the server did not answer: first so long, then twice that, and so on.
 constexpr auto kFirstPause = 2s, kLongestPause = 30s;
 
-school::Milliseconds clockNow() {
-    return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
-        .count();
-}
-
 }  // namespace
 
 std::string toJson(const Standing& s) {

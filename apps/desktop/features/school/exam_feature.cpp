@@ -313,21 +313,20 @@ QMessageBox* ExamFeature::question(const char* name, const QString& text, const 
 }
 
 void ExamFeature::askHandOver() {
-    QMessageBox* box =
-        question("examHandOverDialog", tr("Hand your work over?"),
-                 tr("This ends the exam. Nothing can be changed afterwards."), tr("Hand over"), tr("Go on working"));
-    connect(box, &QMessageBox::buttonClicked, this, [this, box](QAbstractButton* button) {
-        if (box->buttonRole(button) == QMessageBox::AcceptRole) handOver();
-    });
-    box->open();
+    offerHandOver("examHandOverDialog", tr("Hand your work over?"),
+                  tr("This ends the exam. Nothing can be changed afterwards."), tr("Go on working"));
 }
 
 void ExamFeature::tellTimeOver() {
     isOverTold_ = true;
-    QMessageBox* box = question("examOverDialog", tr("The time of this exam is over."),
-                                tr("Hand your work over now. You can still go on, but how late it was handed over is "
-                                   "shown to the teacher who decides about the result."),
-                                tr("Hand over"), tr("Not yet"));
+    offerHandOver("examOverDialog", tr("The time of this exam is over."),
+                  tr("Hand your work over now. You can still go on, but how late it was handed over is "
+                     "shown to the teacher who decides about the result."),
+                  tr("Not yet"));
+}
+
+void ExamFeature::offerHandOver(const char* name, const QString& text, const QString& more, const QString& reject) {
+    QMessageBox* box = question(name, text, more, tr("Hand over"), reject);
     connect(box, &QMessageBox::buttonClicked, this, [this, box](QAbstractButton* button) {
         if (box->buttonRole(button) == QMessageBox::AcceptRole) handOver();
     });

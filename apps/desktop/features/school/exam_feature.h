@@ -45,6 +45,7 @@ class ExamFeature : public Feature {
     void askHandOver();
     void handOver();
     void tellTimeOver();
+    void offerHandOver(const char* name, const QString& text, const QString& more, const QString& reject);
     [[nodiscard]] bool closeDialogs();
     [[nodiscard]] bool isShut();
     [[nodiscard]] qint64 leftMs() const;

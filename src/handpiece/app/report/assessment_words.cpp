@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <optional>
 #include <string_view>
 #include <utility>
 
 #include "handpiece/app/report/assessment_report.h"
+#include "handpiece/app/report/sentence_places.h"
 #include "handpiece/base/config/words.h"
 
 namespace handpiece::report {
@@ -159,28 +159,6 @@ constexpr const char* kReasons[] = {
     "reason.than-its-sessions",
     "reason.went-wrong",
 };
-
-/// What stands in the places of a sentence; none where it is another one.
-std::optional<std::vector<std::string>> placesIn(std::string_view sentence, std::string_view pattern) {
-    constexpr std::string_view kPlace = "{}";
-    std::vector<std::string> places;
-    const std::string_view start = pattern.substr(0, pattern.find(kPlace));
-    if (!sentence.starts_with(start)) return {};
-    sentence.remove_prefix(start.size()), pattern.remove_prefix(start.size());
-    while (!pattern.empty()) {
-        pattern.remove_prefix(kPlace.size());
-        const std::string_view next = pattern.substr(0, pattern.find(kPlace));
-        pattern.remove_prefix(next.size());
-        // The last piece ends the sentence.
-        const std::size_t end = pattern.empty()
-                                    ? (sentence.ends_with(next) ? sentence.size() - next.size() : sentence.npos)
-                                    : sentence.find(next);
-        if (end == sentence.npos) return {};
-        places.emplace_back(sentence.substr(0, end));
-        sentence.remove_prefix(end + next.size());
-    }
-    return sentence.empty() ? std::optional(places) : std::nullopt;
-}
 
 /// What it says of a session may be several sentences.
 constexpr std::string_view kOfSession = "reason.of-session";

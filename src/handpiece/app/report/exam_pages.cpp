@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <optional>
-#include <string_view>
-#include <vector>
+#include <algorithm>
+#include <utility>
 
 #include "handpiece/app/report/html_form.h"
 #include "handpiece/app/report/report_html.h"
+#include "handpiece/app/report/sentence_places.h"
 #include "handpiece/base/config/words.h"
 
 namespace handpiece::report {
@@ -56,25 +56,6 @@ constexpr const char* kDoubts[] = {
     "school-exam-doubt.another-recording", "school-exam-doubt.not-handed-over", "school-exam-doubt.too-fast",
     "school-exam-doubt.locked-used",       "school-exam-doubt.not-comparable",  "school-exam-doubt.chain-changed",
 };
-
-/// What stands in the place of each {} of `pattern`; none where it is another text.
-std::optional<std::vector<std::string>> filledIn(std::string_view pattern, std::string_view text) {
-    std::vector<std::string> filled;
-    for (std::size_t open = pattern.find("{}"); open != pattern.npos; open = pattern.find("{}")) {
-        if (!text.starts_with(pattern.substr(0, open))) return std::nullopt;
-        text.remove_prefix(open);
-        pattern.remove_prefix(open + 2);
-        // The last one goes on to the end.
-        const std::string_view next = pattern.substr(0, pattern.find("{}"));
-        std::size_t end = next.size() == pattern.size() && text.ends_with(next) ? text.size() - next.size()
-                          : next.size() < pattern.size()                        ? text.find(next)
-                                                                                : text.npos;
-        if (end == text.npos || end == 0) return std::nullopt;
-        filled.emplace_back(text.substr(0, end));
-        text.remove_prefix(end);
-    }
-    return pattern == text ? std::optional(filled) : std::nullopt;
-}
 
 std::vector<std::string> told(const std::vector<std::string>& doubts) {
     std::vector<std::string> all;
@@ -148,8 +129,9 @@ std::string examPage(const Looker& who, const ExamView& view, const Names& names
 
 std::string doubtWords(const std::string& said) {
     for (const char* id : kDoubts)
-        if (const auto filled = filledIn(config::Words::in("en").text(id), said))
-            return words()(config::Phrase{id, *filled});
+        if (auto places = placesIn(said, config::Words::in("en").text(id));
+            places && std::none_of(places->begin(), places->end(), [](const std::string& one) { return one.empty(); }))
+            return words()(config::Phrase{id, std::move(*places)});
     return said;
 }
 

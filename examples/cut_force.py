@@ -2,15 +2,18 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a hand feels while a bur cuts: force, feed and what is taken, tissue by tissue.
 
-    python3 cut_force.py --out cut_force.png
+    python3 cut_force.py
     python3 cut_force.py --session session.h5
 """
 import argparse
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import handpiece as hp
+
+matplotlib.use("Agg")  # into a file: no display is needed
 
 
 def main():
@@ -19,11 +22,8 @@ def main():
     options.add_argument("--bur", default="330")
     options.add_argument("--depth-mm", type=float, default=3.0, help="of the plunge")
     options.add_argument("--seed", type=int, default=1, help="of the hand's tremor")
-    options.add_argument("--out", help="picture to write (.png, .svg, .pdf); else a window")
+    options.add_argument("--out", default="cut_force.png", help="picture to write (.png, .svg, .pdf; %(default)s)")
     given = options.parse_args()
-    if given.out:
-        matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
 
     if given.session:
         with hp.Session(given.session) as session:
@@ -70,10 +70,8 @@ def main():
     if bottom.lines:
         bottom.legend(loc="upper left", frameon=False)
     bottom.margins(x=0)
-    if given.out:
-        figure.savefig(given.out, dpi=110)
-    else:
-        plt.show()
+    figure.savefig(given.out, dpi=110)
+    print("drawn:", given.out)
     print(f"{time[-1]:.1f} s, peak {force.max():.2f} N, {removed[-1].sum():.3f} mm3 taken")
 
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where a bur that comes straight down touches a tooth: felt by the paper's convex hull, and on the concave tooth.
 
-    python3 depth_map.py --out depth_map.png
+    python3 depth_map.py
     python3 depth_map.py --tooth molar.stl --bur round-4 --grid 120
 
 Over a fissure the hull stops the bur in the air: the open problem of the paper that Handpiece began with.
@@ -10,9 +10,12 @@ Over a fissure the hull stops the bur in the air: the open problem of the paper 
 import argparse
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import handpiece as hp
+
+matplotlib.use("Agg")  # into a file: no display is needed
 
 NEAR_MM = 1e-4  # what counts as touching
 STEPS = 60
@@ -40,11 +43,8 @@ def main():
     options.add_argument("--tooth", help="case or mesh file (mm); a molar is made without it")
     options.add_argument("--bur", default="round-1/2" if "round-1/2" in hp.BURS else "330")
     options.add_argument("--grid", type=int, default=90, help="places along the longer side")
-    options.add_argument("--out", help="picture to write (.png, .svg, .pdf); else a window")
+    options.add_argument("--out", default="depth_map.png", help="picture to write (.png, .svg, .pdf; %(default)s)")
     given = options.parse_args()
-    if given.out:
-        matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
 
     case = hp.read_case(given.tooth) if given.tooth else hp.make_tooth(faces=30000)
     tooth = hp.prepare(case, voxel_mm=0.1)
@@ -82,10 +82,8 @@ def main():
     axes.set_ylim(np.nanmin(field) - 0.9, 0.15)
     axes.legend(loc="lower center", ncols=3, frameon=False)
     axes.margins(x=0)
-    if given.out:
-        figure.savefig(given.out, dpi=110)
-    else:
-        plt.show()
+    figure.savefig(given.out, dpi=110)
+    print("drawn:", given.out)
     print(f"{x.size} places: the hull stops the bur up to {np.nanmax(over):.3f} mm above the tooth, {np.nanmean(over):.3f} mm on average")
 
 

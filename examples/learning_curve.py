@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """How scores rise from attempt to attempt, out of many sessions.
 
-    python3 learning_curve.py --out learning_curve.png
+    python3 learning_curve.py
     python3 learning_curve.py --exercise dexterity-line a1.h5 a2.h5 b1.h5 b2.h5
 
 Sessions are grouped by the code that they carry, in the order in which they are named. Without any, simulated hands make
@@ -15,9 +15,12 @@ import pathlib
 import tempfile
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import handpiece as hp
+
+matplotlib.use("Agg")  # into a file: no display is needed
 
 GROOVE_MM = {"length": 8.0, "width": 1.2, "depth": 1.5}  # of the exercise dexterity-line
 FEED_MM_S, BUR_RADIUS_MM = 4.0, 0.4
@@ -59,11 +62,8 @@ def main():
     options.add_argument("--students", type=int, default=3, help="to simulate, where there are no sessions")
     options.add_argument("--attempts", type=int, default=6)
     options.add_argument("--prove", action="store_true", help="cut every session again: slower, and proven")
-    options.add_argument("--out", help="picture to write (.png, .svg, .pdf); else a window")
+    options.add_argument("--out", default="learning_curve.png", help="picture to write (.png, .svg, .pdf; %(default)s)")
     given = options.parse_args()
-    if given.out:
-        matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
 
     exercise = hp.open_exercise(given.exercise)
     with tempfile.TemporaryDirectory() as folder:
@@ -102,10 +102,8 @@ def main():
     right.set(xlabel="attempt", ylabel="points lost, mean", title="What the points were lost by", xticks=np.arange(1, longest + 1))
     if shown:
         right.legend(frameon=False)
-    if given.out:
-        figure.savefig(given.out, dpi=110)
-    else:
-        plt.show()
+    figure.savefig(given.out, dpi=110)
+    print("drawn:", given.out)
     for code, scores in percent.items():
         print(code, " ".join(f"{score:.0f}" for score in scores))
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A contact method of one's own beside the two that come along: how deep, how far off, how long it takes.
 
-    python3 own_method.py --out own_method.png
+    python3 own_method.py
 
 The method: the corners of the bur's mesh are looked up in the tooth's distance field, and the deepest decides. It is some
 twenty lines, and right as far as the mesh is fine and the field reaches.
@@ -11,9 +11,12 @@ import argparse
 import time
 
 import matplotlib
+import matplotlib.pyplot as plt
 import numpy as np
 
 import handpiece as hp
+
+matplotlib.use("Agg")  # into a file: no display is needed
 
 
 class Corners(hp.Method):
@@ -52,11 +55,8 @@ def main():
     options.add_argument("--bur", default="330")
     options.add_argument("--count", type=int, default=1500, help="poses")
     options.add_argument("--seed", type=int, default=1, help="of the poses")
-    options.add_argument("--out", help="picture to write (.png, .svg, .pdf); else a window")
+    options.add_argument("--out", default="own_method.png", help="picture to write (.png, .svg, .pdf; %(default)s)")
     given = options.parse_args()
-    if given.out:
-        matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
 
     tooth, bur = hp.prepare(hp.make_tooth(faces=20000), voxel_mm=0.1), hp.Bur(given.bur)
     poses = poses_about(tooth, given.count, given.seed)
@@ -86,10 +86,8 @@ def main():
     right.set(xlabel="depth beyond the exact one [mm] (ends: and more)", ylabel="poses", title="How far each is off", yscale="log")
     right.set_ylim(0.7, 20 * len(exact))
     right.legend(frameon=False, loc="upper right")
-    if given.out:
-        figure.savefig(given.out, dpi=110)
-    else:
-        plt.show()
+    figure.savefig(given.out, dpi=110)
+    print("drawn:", given.out)
     for name, depth in depths.items():
         off = np.abs(depth[near] - exact)
         print(f"{name:8} {micros[name]:7.1f} us a pose, off by {off.mean():.4f} mm on average, {off.max():.4f} at most")

@@ -66,7 +66,10 @@ void SqliteDatabase::keepLogShort() {
 int SqliteDatabase::afterCommit(void* self, sqlite3* handle, const char* name, int pages) {
     auto& database = *static_cast<SqliteDatabase*>(self);
     if (pages < database.emptyLogAt_) return SQLITE_OK;
-    const std::chrono::milliseconds patience = std::exchange(database.patience_, kForReaders);
+    // The longer the log, the longer; another that writes must not give up meanwhile.
+    const auto own =
+        std::min<std::chrono::milliseconds>(kForReaders * (database.emptyLogAt_ / kLogPages), database.patience_ / 2);
+    const std::chrono::milliseconds patience = std::exchange(database.patience_, own);
     const int code = sqlite3_wal_checkpoint_v2(handle, name, SQLITE_CHECKPOINT_TRUNCATE, nullptr, nullptr);
     database.patience_ = patience;
     database.emptyLogAt_ = code == SQLITE_OK ? kLogPages : pages + std::max(kLogPages, pages / 2);

@@ -57,6 +57,17 @@ class Examples(unittest.TestCase):
         self.assertGreater(second, first)
 
 
+class Page(unittest.TestCase):
+    def test_what_the_page_says_runs(self):
+        """The blocks of docs/python.md, one after the other as a reader types them."""
+        text = (EXAMPLES.parent / "docs" / "python.md").read_text(encoding="utf-8")
+        blocks = re.findall(r"^```python\n(.*?)^```$", text, re.M | re.S)
+        self.assertGreater(len(blocks), 2)
+        done = subprocess.run([sys.executable, "-c", "\n".join(blocks)], capture_output=True, text=True, check=False, timeout=1200)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertIn("True", done.stdout.splitlines())
+
+
 class Files(unittest.TestCase):
     def test_every_example_is_tested(self):
         tested = {name[len("test_"):] for name in dir(Examples) if name.startswith("test_")}

@@ -33,9 +33,8 @@ std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, c
         std::filesystem::permissions(file, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write,
                                      none);
     // Pages are read while stations push; what is deleted is overwritten.
-    database->run(
-        "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
-    database->keepLogShort();
+    database->writeAhead();
+    database->run("PRAGMA synchronous = FULL; PRAGMA foreign_keys = ON; PRAGMA secure_delete = ON");
     return database;
 }
 

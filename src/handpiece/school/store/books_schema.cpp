@@ -255,12 +255,12 @@ std::int64_t tables(Database& database, const std::string& which) {
 }
 
 std::int64_t versionOf(Database& database) {
-    if (tables(database, "handpiece_books") == 0) {
-        if (tables(database, "") == 0) return 0;
+    // In this order: another program may make all of them between these two.
+    if (tables(database, "") == 0) return 0;
+    if (tables(database, "handpiece_books") == 0)
         throw core::Error("this is a database of another program", database.where(),
                           "name an empty database, or another folder")
             .as("store-damaged", {"a database of another program"});
-    }
     const std::int64_t version = database.number("SELECT version FROM handpiece_books");
     if (version < 1)
         throw core::Error(fmt::format("these books are damaged: version {}", version), database.where(),

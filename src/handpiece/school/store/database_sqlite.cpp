@@ -58,7 +58,14 @@ constexpr int kLogPages = 1000;
 constexpr std::chrono::milliseconds kForReaders{2000};
 }  // namespace
 
-void SqliteDatabase::keepLogShort() {
+void SqliteDatabase::writeAhead() {
+    // Of two that change it at once SQLite refuses one without asking waitForOthers(): each would wait for the other.
+    const auto until = std::chrono::steady_clock::now() + patience_;
+    while (sqlite3_exec(handle_, "PRAGMA journal_mode = WAL", nullptr, nullptr, nullptr) != SQLITE_OK) {
+        const bool isBusy = (sqlite3_errcode(handle_) & 0xff) == SQLITE_BUSY;
+        if (!isBusy || std::chrono::steady_clock::now() >= until) fail();
+        sqlite3_sleep(1);
+    }
     emptyLogAt_ = kLogPages;
     sqlite3_wal_hook(handle_, &afterCommit, this);
 }

@@ -32,10 +32,11 @@ class SqliteDatabase final : public Database {
     void begin(Access access) override;
     void commit() override { run("COMMIT"); }
     void rollBack() noexcept override;
-    /// Of a database with a write-ahead log: whoever commits when it has grown beyond 4 MB puts it into the file and
-    /// begins it anew. SQLite by itself never waits for readers, so that with one after another it grows without end;
-    /// this waits for those who read, two seconds at most, and else tries again when it is half as long again.
-    void keepLogShort();
+    /// From now on with a write-ahead log, which stays short: whoever commits when it has grown beyond 4 MB puts it
+    /// into the file and begins it anew. SQLite by itself never waits for readers, so that with one after another it
+    /// grows without end; this waits for those who read, the longer the longer the log is, half its patience at most,
+    /// and else tries again when the log is half as long again.
+    void writeAhead();
     /// What went wrong last, as core::Error.
     [[noreturn]] void fail() const;
 

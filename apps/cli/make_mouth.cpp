@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // handpiece make mouth: 32 teeth in their arches, with gingiva and bone.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -31,23 +29,6 @@ struct MakeMouthOptions {
     std::size_t threads = 0;
     bool json = false;
 };
-
-/// What the system could give without taking it from others; all there is where it does not say.
-double freeMemoryBytes() {
-    std::ifstream file("/proc/meminfo");
-    for (std::string name, rest; file >> name; std::getline(file, rest))
-        if (double kib = 0.0; name == "MemAvailable:" && file >> kib) return 1024.0 * kib;
-    return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-}
-
-void requireMemory(const dentition::MouthOptions& mouth) {
-    const double needed = dentition::mouthBytes(mouth), there = freeMemoryBytes();
-    if (needed > there)
-        throw core::Error(
-            fmt::format("a mouth of {} faces a tooth takes about {:.1f} GB of memory, and {:.1f} are free", mouth.faces,
-                        1e-9 * needed, 1e-9 * there),
-            "--faces", "give fewer");
-}
 
 Json toJson(const cases::Case& made, const MakeMouthOptions& o, double tookS) {
     Json teeth = Json::array(), scenery = Json::array();
@@ -83,7 +64,6 @@ void makeMouthCase(const MakeMouthOptions& o) {
     if (!cases::isPackageName(o.out)) core::requireReplaceable(o.out, "case.toml");
     core::setThreadCount(o.threads);
     const lesion::MouthLesions lesions = lesion::mouthLesionsByName(o.lesions);
-    requireMemory(o.mouth);
     const auto begun = std::chrono::steady_clock::now();
     studies::ProgressBar bar("making the mouth");
     cases::Case made = dentition::makeMouth(o.patient, o.mouth, core::part(bar.listener(), 0.0, 0.9));

@@ -156,7 +156,8 @@ class RealtimeKit : public testing::Test {
             std::vector<std::string>{"dbus-daemon", "--nofork",
                                      "--config-file=" + (folder_.path() / "bus.conf").string()},
             folder_.path() / "bus.log");
-        if (!waitFor([&] { return fs::exists(folder_.path() / "bus"); }))
+        // Its socket is there before it listens.
+        if (!waitFor([&] { return owned("org.freedesktop.DBus"); }))
             return because("dbus-daemon does not run here", "bus.log");
         if (!withDaemon) return true;
         if (!fs::exists(kDaemon)) return because("rtkit-daemon is not installed", "bus.log");

@@ -2,9 +2,12 @@
 #include "handpiece/model/dentition/mouth.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <array>
 #include <atomic>
+#include <fstream>
+#include <string>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
@@ -31,6 +34,23 @@ std::vector<std::size_t> alongArch(bool upper) {
     return order;
 }
 
+/// What the system could give without taking it from others [bytes]; all there is where it does not say.
+double freeMemoryBytes() {
+    std::ifstream file("/proc/meminfo");
+    for (std::string name, rest; file >> name; std::getline(file, rest))
+        if (double kib = 0.0; name == "MemAvailable:" && file >> kib) return 1024.0 * kib;
+    return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+void requireMemory(const MouthOptions& options) {
+    const double needed = mouthBytes(options), there = freeMemoryBytes();
+    if (needed > there)
+        throw core::Error(
+            fmt::format("a mouth of {} faces a tooth takes about {:.1f} GB of memory, and {:.1f} are free",
+                        options.faces, 1e-9 * needed, 1e-9 * there),
+            "--faces", "give fewer");
+}
+
 }  // namespace
 
 double mouthBytes(const MouthOptions& options) {
@@ -47,6 +67,7 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
     if (!(options.openingMm >= 0.0 && options.openingMm <= kWidestOpeningMm))
         throw core::Error(fmt::format("a mouth does not open by {} mm", options.openingMm), "--opening",
                           fmt::format("give 0 (in occlusion) to {} mm", kWidestOpeningMm));
+    requireMemory(options);
 
     constexpr double kTeethShare = 0.75, kArchesShare = 0.85;
     std::vector<cases::Tooth> teeth(kToothCount);

@@ -23,7 +23,7 @@ struct MouthOptions {
 
 /// The tooth in its own frame, its adjacent teeth and antagonists to be cut, the rest to be felt, with gingiva and bone
 /// of both arches. In parallel; the same bytes for the same request at any thread count. Throws core::Error for what
-/// makeTooth refuses and an opening outside 0 to 60 mm.
+/// makeTooth refuses, an opening outside 0 to 60 mm, and more faces than there is memory free for.
 [[nodiscard]] cases::Case makeMouth(const Patient& patient, const MouthOptions& options = {},
                                     const core::Progress& progress = {});
 

@@ -108,7 +108,14 @@ void Command::callback(std::function<void()> work) {
 }
 template <class T>
 Option Command::option(const std::string& name, T& value, const std::string& help) {
-    return Option(*app_->add_option(name, value, help));
+    CLI::Option* const option = app_->add_option(name, value, help);
+    // CLI11 takes the next word, whatever it is: `--out --json` made a folder of that name.
+    option->check(CLI::Validator(
+        [](const std::string& given) {
+            return given.rfind("--", 0) == 0 ? fmt::format("its value is missing before {}", given) : std::string();
+        },
+        ""));
+    return Option(*option);
 }
 Option Command::flag(const std::string& name, bool& value, const std::string& help) {
     return Option(*app_->add_flag(name, value, help));

@@ -45,7 +45,8 @@ class Usage(SystemTest):
     def test_wrong_usage_is_2(self):
         for arguments in ([], ["drill"], ["make"], ["mesh"], ["make", "tooth"], ["probe"], ["run"], ["reproduce"],
                           ["run", "--tooth", "x.stl", "--out", "y", "--speed"], ["mesh", "info"],
-                          ["make", "tooth", "--faces", "many", "--out", "x"], ["probe", "--tooth", "x", "--nonsense"],
+                          ["make", "tooth", "--faces", "many", "--out", "x"], ["make", "block", "--out", "--json"],
+                          ["exercise", "trials", "--out", "--help"], ["probe", "--tooth", "x", "--nonsense"],
                           ["completion", "tcsh"], ["mesh", "repair", "a.stl", "b.stl", "--weld", "-1"]):
             with self.subTest(arguments=arguments):
                 done = run(*arguments, cwd=self.folder)

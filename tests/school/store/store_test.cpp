@@ -10,6 +10,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <barrier>
 #include <csignal>
 #include <fstream>
 #include <set>
@@ -387,6 +388,26 @@ TEST_F(StoreTest, TwoProgramsWriteAtOnce) {
     ASSERT_EQ(outbox.size(), 2u * kEach);
     for (std::size_t i = 1; i < outbox.size(); ++i)
         EXPECT_GT(outbox[i].sequence, outbox[i - 1].sequence);
+}
+
+TEST_F(StoreTest, IsMadeOnceWhenManyComeToItFirst) {
+    for (int round = 0; round < 20; ++round) {
+        const fs::path file = file_.parent_path() / ("first" + std::to_string(round));
+        std::vector<std::thread> threads;
+        std::barrier start(6);
+        for (int t = 0; t < 6; ++t)
+            threads.emplace_back([&] {
+                start.arrive_and_wait();
+                EXPECT_EQ(test::errorOf([&] {
+                              Store store(file);
+                              store.add(attempt());
+                          }),
+                          "");
+            });
+        for (std::thread& thread : threads)
+            thread.join();
+        EXPECT_EQ(Store(file).attempts().size(), 6u);
+    }
 }
 
 TEST_F(StoreTest, SaysWhenAnotherProgramHoldsIt) {

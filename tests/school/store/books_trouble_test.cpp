@@ -6,7 +6,6 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <barrier>
 #include <csignal>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 #include <thread>
 
 #include "school/store/books_fixture.h"
+#include "support/at_once.h"
 #include "support/error_of.h"
 #include "support/random.h"
 
@@ -299,15 +299,7 @@ TEST_P(BooksInTroubleTest, AreMadeOnceWhenManyComeToThemFirst) {
     for (int round = 0; round < 20; ++round) {
         data_ = folder_.path() / fmt::format("first{}", round);
         if (isPostgres()) address_ = server()->address(schema_ = server()->newSchema());
-        std::vector<std::thread> threads;
-        std::barrier start(6);
-        for (int t = 0; t < 6; ++t)
-            threads.emplace_back([&] {
-                start.arrive_and_wait();
-                EXPECT_EQ(test::errorOf([&] { static_cast<void>(open()); }), "");
-            });
-        for (std::thread& thread : threads)
-            thread.join();
+        test::atOnce(6, [&] { EXPECT_EQ(test::errorOf([&] { static_cast<void>(open()); }), ""); });
         EXPECT_EQ(sql("SELECT count(*) FROM handpiece_books"), "1");
     }
 }

@@ -10,13 +10,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <barrier>
 #include <csignal>
 #include <fstream>
 #include <set>
 #include <thread>
 
 #include "handpiece/base/core/file.h"
+#include "support/at_once.h"
 #include "support/error_of.h"
 #include "support/random.h"
 
@@ -393,19 +393,7 @@ TEST_F(StoreTest, TwoProgramsWriteAtOnce) {
 TEST_F(StoreTest, IsMadeOnceWhenManyComeToItFirst) {
     for (int round = 0; round < 20; ++round) {
         const fs::path file = file_.parent_path() / ("first" + std::to_string(round));
-        std::vector<std::thread> threads;
-        std::barrier start(6);
-        for (int t = 0; t < 6; ++t)
-            threads.emplace_back([&] {
-                start.arrive_and_wait();
-                EXPECT_EQ(test::errorOf([&] {
-                              Store store(file);
-                              store.add(attempt());
-                          }),
-                          "");
-            });
-        for (std::thread& thread : threads)
-            thread.join();
+        test::atOnce(6, [&] { EXPECT_EQ(test::errorOf([&] { Store(file).add(attempt()); }), ""); });
         EXPECT_EQ(Store(file).attempts().size(), 6u);
     }
 }

@@ -78,16 +78,12 @@ void migrate(Database& database) {
 
 /// New, of now, of before; throws for what is another's, or of a later program.
 void bringUp(Database& database) {
-    std::int64_t application = 0, version = 0, tables = 0;
-    {
-        // Of one moment: another program may make it meanwhile.
-        Transaction seen(database, Database::Access::read);
-        application = database.number("PRAGMA application_id");
-        version = database.number("PRAGMA user_version");
-        tables = database.number("SELECT count(*) FROM sqlite_schema");
-        seen.commit();
-    }
-    const bool isNew = application == 0 && version == 0 && tables == 0;
+    // Looked at in one moment: another program may make it meanwhile.
+    Transaction seen(database, Database::Access::read);
+    const std::int64_t application = database.number("PRAGMA application_id");
+    const std::int64_t version = database.number("PRAGMA user_version");
+    const bool isNew = application == 0 && version == 0 && database.number("SELECT count(*) FROM sqlite_schema") == 0;
+    seen.commit();
     if (!isNew && application != kApplicationId)
         throw core::Error("this is a database of another program", database.where(),
                           "move the file away: a new one is made")

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <utility>
 
 #include "handpiece/base/core/error.h"
 
@@ -43,17 +45,31 @@ std::optional<measure::Hit> ball(const view::Ray& ray) {
     if (at <= 0.0) return {};
     return hitAt(ray, at, (ray.originMm + at * ray.direction).normalized());
 }
-/// The bur: balls of half a millimetre, from its round end to 3 mm up.
-template <class Distance>
-PointerController::Feel feelOf(Distance distance) {
-    return [distance](const core::Pose& pose) {
-        contact::Depth depth;
+/// The bur: balls of half a millimetre, from its round end to 3 mm up. The tooth was cut `cutMm` deep, the same
+/// everywhere, when the stroke began; `body`: how far the handpiece behind it is clear.
+class Felt final : public HandFeel {
+  public:
+    using Distance = std::function<double(const Vec3&)>;
+    explicit Felt(Distance distance) : distance_(std::move(distance)) {}
+    Clearance ofBur(const core::Pose& pose) override {
+        double clear = kFarClearMm;
         for (double z = 0.5; z <= 2.5; z += 0.125)
-            depth.depthMm = std::max(depth.depthMm, 0.5 - distance(pose.apply(Vec3(0, 0, z))));
-        depth.depthMm = std::max(depth.depthMm, -5.0);
-        return depth;
-    };
-}
+            clear = std::min(clear, distance_(pose.apply(Vec3(0, 0, z))) - 0.5);
+        return {clear, what ? what(pose) : std::uint16_t{0}, true};
+    }
+    double ofBodyMm(const core::Pose& pose) override { return body ? body(pose) : kFarClearMm; }
+    double ofSideMm(const core::Pose& pose) override { return side ? side(pose) : kFarClearMm; }
+    double inStrokeMm(const core::Pose& pose) override { return ofBur(pose).mm + cutMm; }
+    void beginStroke() override { ++strokes; }
+
+    std::function<double(const core::Pose&)> body, side;
+    std::function<std::uint16_t(const core::Pose&)> what;
+    double cutMm = 0.0;
+    int strokes = 0;
+
+  private:
+    Distance distance_;
+};
 double planeMm(const Vec3& p) {
     return p.z();
 }
@@ -80,13 +96,14 @@ struct Scene {
     explicit Scene(double (&distance)(const Vec3&), const Vec3& eye = Vec3(0, -40, 30), const Vec3& up = Vec3::UnitZ())
         : camera(from(eye, up)),
           mailbox(std::make_shared<device::PointerMailbox>()),
+          felt(std::make_shared<Felt>(distance)),
           hand(mailbox, {Vec3(0, 0, 12), Quat::Identity()}, distance == ballMm ? ball : plane) {
         hand.setEye(camera, kViewport);
-        hand.setFeel(feelOf(distance));
+        hand.setFeel(felt);
     }
     [[nodiscard]] Vec3 way() const { return Vec3(hand.target().way); }
     [[nodiscard]] double clearMm(double (&distance)(const Vec3&)) const {
-        return -feelOf(distance)({tip(), turn()}).depthMm;
+        return Felt(distance).ofBur({tip(), turn()}).mm;
     }
     /// Of a place from the line of sight through a pixel [px].
     [[nodiscard]] double besides(const Vec2& at, const Vec3& p) const { return (pixel(p) - at).norm(); }
@@ -107,6 +124,7 @@ struct Scene {
     }
     view::Camera camera;
     std::shared_ptr<device::PointerMailbox> mailbox;
+    std::shared_ptr<Felt> felt;
     PointerController hand;
 };
 
@@ -235,7 +253,7 @@ TEST(PointerController, overAnEdgeItIsLiftedAndPutDownAgain) {
             // Pressed on, the way between two places leads through no tooth.
             for (double share = 0.0; share <= 1.0; share += 0.1) {
                 const Vec3 between = bur + share * (s.tip() - bur);
-                EXPECT_LT(feelOf(stepMm)({between, Quat::Identity()}).depthMm, 0.5) << i;
+                EXPECT_LT(-Felt(stepMm).ofBur({between, Quat::Identity()}).mm, 0.5) << i;
             }
             bur = s.tip();
         } else {

@@ -6,10 +6,12 @@
 #include <numbers>
 #include <utility>
 
+#include "handpiece/app/input/holding.h"
+#include "handpiece/app/input/line_of_sight.h"
+#include "handpiece/app/input/way_over.h"
 #include "handpiece/app/input/working_position.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/rotation.h"
-#include "handpiece/tick/contact/field_method.h"
 
 namespace handpiece::input {
 namespace {
@@ -18,19 +20,22 @@ using core::Quat;
 using core::Vec2;
 using core::Vec3;
 
-constexpr double kReachMm = 10.0;  // a press goes no deeper, whatever gives way
-constexpr double kNearMm = 1e-3;   // a line of sight is followed to within this of the tooth
-constexpr int kMaxLooks = 200;     // on the way there
-constexpr double kStepMm = 0.3;    // in which the way through the tooth is looked at
-constexpr double kJumpMm = 0.5;    // nearer by so much within kJumpPixels: another surface, in front of this one
+constexpr double kJumpMm = 0.5;  // nearer by so much within kJumpPixels: another surface, in front of this one
+constexpr double kDropMm = 1.0;  // or farther: over an edge, with a wall below it
 constexpr double kJumpPixels = 4.0;
 constexpr double kMaxNudgeMm = 0.5;  // into the tooth
 constexpr double kPivotRadPerPixel = 0.005;
 constexpr double kLeastLeverMm = 1.0;  // of a rest: nearer to the tip nothing turns about it
 constexpr double kStartAboveMm = 6.0;
 constexpr double kThereMm = 0.2;     // as near as that a bur has come to where it was to go
+constexpr double kStraightMm = 3.0;  // from so far away, at most, a press goes straight to its place
 constexpr int kMaxPictures = 30;     // about a second: then another way out is tried
 constexpr int kPatientPictures = 9;  // about 0.3 s without anything cut
+constexpr double kSameTurnRad = 1e-6;
+constexpr double kSameSight = 0.01;  // of two lines' directions: some six pixels
+constexpr double kTouchedMm = 0.1;  // so deep in tissue a handpiece is not turned
+constexpr double kTurnedRad = 0.05;   // nearer to its orientation than that a handpiece is held as it is to be
+constexpr double kSeenFromSide = 0.8;  // cosine of the eye's way and buccolingual: one looks at a side
 
 Quat normalised(const Quat& q) {
     return q.norm() > 1e-9 ? q.normalized() : Quat::Identity();
@@ -55,37 +60,36 @@ core::Pose startPose(const core::Box& tooth, int fdiNumber, int buccalSign) {
 }
 
 struct PointerController::State {
-    /// Where a line of sight leads the bur, in millimetres along it.
-    struct Sight {
-        view::Ray ray{Vec3::Zero(), -Vec3::UnitZ()};
-        std::optional<double> hoverAt, touchAt;
-        double endAt = 0.0;   // as deep as a press may go
-        bool byStop = false;  // which the stop says
-        [[nodiscard]] Vec3 at(double mm) const { return ray.originMm + mm * ray.direction; }
-    };
-
     std::shared_ptr<device::PointerMailbox> mailbox;
     Cast cast;
-    Feel feel;
+    std::shared_ptr<HandFeel> feel;
     view::Camera camera;
     view::Viewport viewport;
     device::PointerTarget target;
 
-    Vec3 tipMm = Vec3::Zero();  // wanted, of a bur that does not press
-    Quat orientation = Quat::Identity();
-    std::optional<Vec3> proxyMm;  // as last told
+    Vec3 tipMm = Vec3::Zero();        // wanted, of a bur that does not press
+    Quat own = Quat::Identity();      // the student's tilt
+    bool isOwn = false;               // and whether they have tilted it
+    Quat orientation = own;           // as it is to be held, where it is going
+    Quat onWay = own;                 // as it is held on the way there
+    std::optional<Vec3> proxyMm;      // as last told
+    Vec3 sentMm = Vec3::Zero();       // as long as nothing was told: where the hand was sent
     bool touching = false;
 
     double loadN = kFirstLoadN;
-    std::optional<double> stopMm;
+    DepthLimits limits;
     bool latched = false, frozen = false, away = false;
 
     bool pressed = false, turning = false;
-    std::optional<Sight> sight;  // what the pointer leads it along
-    double endHereMm = 1e9;      // along that, as deep as it may go where it is, held back beside it
-    // On its way out of a cavity, or over an edge; then, when it is pressed, to where it is to be put down.
-    bool lifting = false, liftsTurning = false, crossing = false;
-    Vec3 outMm = Vec3::Zero(), outWay = Vec3::UnitZ();
+    std::optional<LineOfSight> sight;     // what the pointer leads it along
+    std::optional<std::uint16_t> stroke;  // on what it began
+    double endHereMm = 1e9;               // along the sight, as deep as it may go where it is, held back beside it
+    bool noReach = false;                 // however the handpiece is held
+    std::optional<view::Ray> unreached;   // by which that was found
+    // On its way out of a cavity, or over an edge; travelling, to where it is to be.
+    bool lifting = false, liftsTurning = false, travelling = false, regrips = false;
+    Vec3 outMm = Vec3::Zero(), outWay = Vec3::UnitZ(), onWayMm = Vec3::Zero();
+    Quat heldNow = own;  // as last told, or sent
     int pictures = 0;
 
     // Whether anything goes.
@@ -101,47 +105,67 @@ struct PointerController::State {
     Vec2 lagPixels = Vec2::Zero();  // by which the bur stays behind the pointer
 
     [[nodiscard]] Vec3 axis() const { return orientation * Vec3::UnitZ(); }
-    [[nodiscard]] Vec3 place() const { return proxyMm.value_or(tipMm); }
-    [[nodiscard]] bool presses() const { return pressed && !lifting && !crossing && sight && sight->touchAt; }
+    [[nodiscard]] Vec3 place() const { return proxyMm.value_or(sentMm); }
+    [[nodiscard]] Leading leading() const { return {*feel, orientation}; }
+    [[nodiscard]] double farMm() const { return camera.distanceMm() + 100.0; }
+    [[nodiscard]] bool isOnStroke() const { return !stroke || !sight || !sight->touchAt || sight->what == *stroke; }
+    [[nodiscard]] bool presses() const {
+        return pressed && !lifting && !travelling && !noReach && sight && sight->touchAt && isOnStroke();
+    }
     void send();
     [[nodiscard]] Vec2 slowed(const Vec2& pixel, double paceNow);
     bool swing(const Vec3& fromMm);
-    [[nodiscard]] double clearMm(const Vec3& tip) const;
-    [[nodiscard]] std::optional<double> meet(const Sight& sight, double fromMm, double offMm) const;
-    [[nodiscard]] double wayOut(const Vec3& tip, const Vec3& direction, double offMm) const;
-    void findEnd(Sight& sight) const;
-    [[nodiscard]] Sight sightThrough(const Vec2& pixel) const;
+    [[nodiscard]] double clearMm(const Vec3& tip) const { return feel ? leading().clearMm(tip) : kReachMm; }
+    [[nodiscard]] LineOfSight sightThrough(const Vec2& pixel) const;
+    bool hold(const view::Ray& ray);
     void aim(const Vec2& pixel);
+    void travel();
     void lead(const Vec2& from, const Vec2& to);
     void lift();
     void goOn();
     void holdBack();
     void turnAxisTo(const Vec3& direction);
+    void turnTo(const Quat& to);
+    void aimAgain();
+    void limitsChanged();
 };
 
 void PointerController::State::send() {
     const Vec3 way = sight ? sight->ray.direction : Vec3(Vec3::Zero());
     target.farMm = target.loadN = 0.0;
+    target.passMm = device::PointerTarget{}.passMm;
+    target.mostN = loadN;
     target.isLed = lifting;
     put(target.way, way);
     if (lifting) {
         put(target.positionMm, outMm);
         put(target.way, outWay);
-        target.loadN = std::max(loadN, kFirstLoadN);
+        target.loadN = loadN;
     } else if (presses()) {
         put(target.positionMm, sight->at(*sight->touchAt));
         target.farMm = std::min(sight->endAt, endHereMm) - *sight->touchAt;
+        if (limits.perPassMm) target.passMm = sight->passAt - *sight->touchAt;
         target.loadN = loadN;
+    } else if (noReach) {
+        put(target.way, Vec3::Zero());  // it stays where it is
     } else {
-        put(target.positionMm, tipMm);
+        put(target.positionMm, travelling ? onWayMm : tipMm);
     }
-    target.orientation[0] = orientation.w();
+    const Quat turn = noReach && !lifting ? heldNow : travelling ? onWay : orientation;
+    target.orientation[0] = turn.w();
     for (int k = 0; k < 3; ++k)
-        target.orientation[k + 1] = orientation.vec()[k];
-    const bool cutting = (pressed && turning) || (lifting && liftsTurning);
-    target.pedal = !away && (latched || cutting) ? 1.0 : 0.0;
+        target.orientation[k + 1] = turn.vec()[k];
+    // A bur that travels, or hovers over what the stroke does not cut, meets nothing with the pedal down.
+    const bool works = !lifting && !travelling && !noReach && isOnStroke();
+    const bool cutting = (pressed && turning && works) || (lifting && liftsTurning);
+    target.pedal = !away && ((latched && !travelling) || cutting) ? 1.0 : 0.0;
     target.frozen = frozen;
     target.away = away;
+    target.regrips = travelling && regrips && !lifting && !frozen && !away;
+    if (!proxyMm) {
+        sentMm = Vec3(target.positionMm);
+        heldNow = turn;
+    }
     mailbox->write(target);
 }
 
@@ -161,118 +185,103 @@ bool PointerController::State::swing(const Vec3& fromMm) {
     if (!restMm) return false;
     const Vec3 before = fromMm - *restMm, after = tipMm - *restMm;
     if (before.norm() < kLeastLeverMm || after.norm() < kLeastLeverMm) return false;
-    orientation = normalised(core::rotationBetween(before, after) * orientation);
+    const Quat turn = core::rotationBetween(before, after);
+    own = normalised(turn * own);
+    orientation = normalised(turn * orientation);
     return true;
 }
 
-/// Of the whole bur, from the uncut tooth; negative in it. At least.
-double PointerController::State::clearMm(const Vec3& tip) const {
-    if (!feel) return kReachMm;
-    core::Pose pose;
-    pose.positionMm = tip;
-    pose.orientation = orientation;
-    return -feel(pose).depthMm;
+LineOfSight PointerController::State::sightThrough(const Vec2& pixel) const {
+    const view::Ray ray = view::rayThrough(camera, viewport, pixel);
+    if (feel) return leading().alongRay(ray, kHoverMm, farMm());
+    LineOfSight nothing;
+    nothing.ray = ray;
+    return nothing;
 }
 
-/// Where the bur, led along a line of sight, comes as near to the uncut tooth as `offMm`.
-std::optional<double> PointerController::State::meet(const Sight& s, double fromMm, double offMm) const {
-    if (!feel) return {};
-    const double farMm = camera.distanceMm() + 100.0;
-    double at = fromMm;
-    for (int i = 0; i < kMaxLooks && at < farMm; ++i) {
-        const double left = clearMm(s.at(at)) - offMm;
-        if (left < kNearMm) return at;
-        at += left;
+/// Takes the handpiece so that it is clear where that line leads; true when that is another way than before.
+bool PointerController::State::hold(const view::Ray& ray) {
+    // What was looked for in vain is not looked for again until the pointer has gone on.
+    if (unreached && (unreached->originMm - ray.originMm).norm() < kNearMm &&
+        (unreached->direction - ray.direction).norm() < kSameSight) {
+        noReach = true;
+        return false;
     }
-    return {};
-}
-
-/// How far along a direction the bur must go to be so far clear of the uncut tooth.
-double PointerController::State::wayOut(const Vec3& tip, const Vec3& direction, double offMm) const {
-    double way = 0.0;
-    for (int i = 0; i < kMaxLooks && way < 2.0 * kReachMm; ++i) {
-        const double missing = offMm - clearMm(tip + way * direction);
-        if (missing < kNearMm) break;
-        way += std::max(missing, 5.0 * kNearMm);
-    }
-    return way;
-}
-
-/// As deep as the stop says. Without one no farther than to where the bur is deepest in the tooth: beyond it would come
-/// out at the other side, or run down along a wall.
-void PointerController::State::findEnd(Sight& s) const {
-    const auto depthAt = [&](double way) { return -clearMm(s.at(*s.touchAt + way)); };
-    s.byStop = stopMm.has_value();
-    double end = 0.0;
-    if (stopMm) {
-        // Along the bur, as one measures; a bur that works with its side hardly comes out that way, and there the way
-        // in counts.
-        end = *stopMm;
-        const double mostMm = 3.0 * *stopMm;
-        for (int i = 0; i < 8 && end < mostMm && depthAt(end) > 0.0; ++i) {
-            const double missing = *stopMm - wayOut(s.at(*s.touchAt + end), axis(), 0.0);
-            if (missing < 5.0 * kNearMm) break;
-            end = std::min(end + missing, mostMm);
-        }
-    } else {
-        double deepest = 0.0;
-        for (double way = 0.0; way <= kReachMm; way += kStepMm) {
-            const double depth = depthAt(way);
-            if (depth > deepest) {
-                deepest = depth;
-                end = way;
-            } else if (depth < deepest - kStepMm) {
-                break;
-            }
-        }
-        end = std::min(end + kStepMm, kReachMm);
-    }
-    s.endAt = *s.touchAt + end;
-}
-
-PointerController::State::Sight PointerController::State::sightThrough(const Vec2& pixel) const {
-    Sight s;
-    s.ray = view::rayThrough(camera, viewport, pixel);
-    s.hoverAt = meet(s, 0.0, kHoverMm);
-    if (s.hoverAt) s.touchAt = meet(s, *s.hoverAt, 0.0);
-    return s;
+    unreached.reset();
+    noReach = false;
+    if (!feel) return false;
+    const std::optional<Quat> found = holdAt(*feel, ray, {own, orientation, isOwn, kHoverMm, farMm()});
+    noReach = !found;
+    if (noReach) unreached = ray;
+    if (!found || core::angleBetween(*found, orientation) < kSameTurnRad) return false;
+    if (!presses() || !touching) orientation = *found;  // else out first
+    return true;
 }
 
 void PointerController::State::aim(const Vec2& pixel) {
+    const bool isInside = presses() && touching;
+    const bool turns = hold(view::rayThrough(camera, viewport, pixel));
+    if (isInside && (turns || noReach)) return lift();  // afterwards it is aimed again
     sight = sightThrough(pixel);
     endHereMm = 1e9;
-    if (pressed && sight->touchAt) findEnd(*sight);
+    if (pressed && sight->touchAt) {
+        if (!stroke) stroke = sight->what;
+        leading().findEnd(*sight, limits);
+    }
     if (sight->hoverAt) {
         tipMm = sight->at(*sight->hoverAt);
-        return;
+    } else {
+        // Beside the teeth: in the view plane through the last place.
+        const Vec3 forward = camera.forward();
+        const double across = sight->ray.direction.dot(forward);
+        if (across > 1e-3) tipMm = sight->at((tipMm - sight->ray.originMm).dot(forward) / across);
     }
-    // Beside the tooth: in the view plane through the last place.
-    const Vec3 forward = camera.forward();
-    const double across = sight->ray.direction.dot(forward);
-    if (across > 1e-3) tipMm = sight->at((tipMm - sight->ray.originMm).dot(forward) / across);
+    if (!lifting && !(presses() && touching)) travel();
 }
 
-/// A pressed bur follows the pointer; over an edge it is lifted.
+/// Whether the instrument has to be lifted over something on its way, and where it goes next. Lifted it is taken out of
+/// the mouth and brought in again: it meets nothing.
+void PointerController::State::travel() {
+    travelling = false;
+    if (!feel || noReach) return;
+    const core::Pose here{place(), heldNow}, there{tipMm, orientation};
+    const bool isNear = (here.positionMm - tipMm).norm() < kThereMm &&
+                        core::angleBetween(heldNow, orientation) < kTurnedRad;
+    if (isNear || isWayFree(*feel, here, there)) {
+        travelling = pressed && (here.positionMm - tipMm).norm() > kStraightMm;
+        onWayMm = tipMm;
+        onWay = orientation;
+        regrips = false;
+        return;
+    }
+    const core::Pose next = nextOnWayOver(*feel, here, there, -camera.forward());
+    onWayMm = next.positionMm;
+    onWay = next.orientation;
+    travelling = regrips = true;
+}
+
+/// A pressed bur follows the pointer; over an edge, and off what the stroke is on, it is lifted.
 void PointerController::State::lead(const Vec2& from, const Vec2& to) {
     const int parts = std::clamp(static_cast<int>(std::ceil((to - from).norm() / kJumpPixels)), 1, 32);
     std::optional<double> before = sight ? sight->touchAt : std::nullopt;
-    bool jumps = false;
+    bool leaves = false;
     if (presses() && touching) {
-        for (int i = 1; i <= parts && !jumps; ++i) {
-            const Sight next = sightThrough(from + (static_cast<double>(i) / parts) * (to - from));
-            jumps = before && next.touchAt && *next.touchAt < *before - kJumpMm;
+        for (int i = 1; i <= parts && !leaves; ++i) {
+            const LineOfSight next = sightThrough(from + (static_cast<double>(i) / parts) * (to - from));
+            leaves = !next.touchAt || (stroke && next.what != *stroke) ||
+                     (before && (*next.touchAt < *before - kJumpMm || *next.touchAt > *before + kDropMm));
             before = next.touchAt;
         }
     }
-    if (jumps) lift();
+    if (leaves) return lift();
     aim(to);
-    if (jumps) crossing = true;
 }
 
 /// Out of the tooth by the shorter way, and half a millimetre off it.
 void PointerController::State::lift() {
     const Vec3 from = place(), back = sight ? Vec3(-sight->ray.direction) : axis();
-    const double alongBur = wayOut(from, axis(), kHoverMm), towardsEye = wayOut(from, back, kHoverMm);
+    const double alongBur = feel ? leading().wayOutMm(from, axis(), kHoverMm) : 0.0;
+    const double towardsEye = feel ? leading().wayOutMm(from, back, kHoverMm) : 0.0;
     outWay = alongBur <= towardsEye ? axis() : back;
     outMm = from + std::min(alongBur, towardsEye) * outWay;
     lifting = true;
@@ -285,7 +294,6 @@ void PointerController::State::goOn() {
     lifting = false;
     tipMm = outMm;
     pictures = 0;
-    crossing = pressed;
     if (lastPixel && (pressed || sight)) aim(*lastPixel - lagPixels);
 }
 
@@ -297,14 +305,34 @@ void PointerController::State::holdBack() {
     if ((from - sight->ray.direction * sight->ray.direction.dot(from)).norm() < 0.5 * kThereMm) return;
     const std::optional<Vec2> pixel = view::pixelOf(camera, viewport, place());
     if (!pixel) return;
-    Sight here = sightThrough(*pixel);
+    LineOfSight here = sightThrough(*pixel);
     if (!here.touchAt) return;
-    findEnd(here);
+    leading().findEnd(here, limits);
     endHereMm = (here.at(here.endAt) - sight->ray.originMm).dot(sight->ray.direction);
 }
 
 void PointerController::State::turnAxisTo(const Vec3& direction) {
-    orientation = normalised(Quat::FromTwoVectors(axis(), direction) * orientation);
+    turnTo(normalised(core::rotationBetween(axis(), direction) * orientation));
+}
+
+/// By the student; not into teeth or gingiva with the handpiece, where there is a place to look from.
+void PointerController::State::turnTo(const Quat& to) {
+    unreached.reset();
+    own = to;
+    if (feel && feel->ofBodyMm({place(), to}) < std::min(-kTouchedMm, feel->ofBodyMm({place(), orientation}))) return;
+    orientation = onWay = to;
+}
+
+/// With another tilt, where the pointer is.
+void PointerController::State::aimAgain() {
+    if (lastPixel && sight && !lifting && !pressed) aim(*lastPixel - lagPixels);
+    send();
+}
+
+void PointerController::State::limitsChanged() {
+    if (feel && sight && sight->touchAt) leading().findEnd(*sight, limits);
+    holdBack();
+    send();
 }
 
 PointerController::PointerController(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start,
@@ -314,12 +342,13 @@ PointerController::PointerController(std::shared_ptr<device::PointerMailbox> mai
         throw core::Error("a pointer's hand needs a mailbox, a tooth and a place to begin", "pointer hand");
     state_->mailbox = std::move(mailbox);
     state_->cast = std::move(cast);
-    state_->tipMm = start.positionMm;
-    state_->orientation = start.orientation;
+    state_->tipMm = state_->sentMm = start.positionMm;
+    state_->heldNow = start.orientation;
+    state_->own = state_->orientation = start.orientation;
     state_->send();
 }
 
-void PointerController::setFeel(Feel feel) {
+void PointerController::setFeel(std::shared_ptr<HandFeel> feel) {
     state_->feel = std::move(feel);
 }
 
@@ -332,6 +361,7 @@ void PointerController::setEye(const view::Camera& camera, const view::Viewport&
     s.camera = camera;
     s.viewport = viewport;
     s.rebase = s.pressed;
+    s.unreached.reset();
 }
 
 void PointerController::follow(const messages::HapticSample& sample) {
@@ -339,9 +369,13 @@ void PointerController::follow(const messages::HapticSample& sample) {
     if (!p.allFinite() || sample.tick == 0) return;  // nothing told yet
     State& s = *state_;
     s.proxyMm = p;
+    const auto& q = sample.proxyOrientation;
+    const Quat turn(q[0], q[1], q[2], q[3]);
+    if (std::abs(turn.squaredNorm() - 1.0) < 0.1) s.heldNow = turn.normalized();
     s.touching = sample.depthMm > 0.0;
     s.stalled = (sample.flags & messages::kStalled) != 0;
-    s.waits = (sample.flags & (messages::kWaiting | messages::kRestoring)) != 0;
+    const bool regripped = (sample.buttons & device::kRegripsButton) != 0;
+    s.waits = (sample.flags & (messages::kWaiting | messages::kRestoring)) != 0 && !regripped && !s.travelling;
     double removed = 0.0;
     for (const double v : sample.removedMm3)
         removed += v;
@@ -354,14 +388,17 @@ void PointerController::follow(const messages::HapticSample& sample) {
         ++s.pictures;
         if ((p - s.outMm).norm() < kThereMm) {
             s.goOn();
-        } else if (s.pictures == kMaxPictures && s.sight) {
+        } else if (s.pictures == kMaxPictures && s.sight && s.feel) {
             s.outWay = -s.sight->ray.direction;
-            s.outMm = p + s.wayOut(p, s.outWay, kHoverMm) * s.outWay;
+            s.outMm = p + s.leading().wayOutMm(p, s.outWay, kHoverMm) * s.outWay;
         } else if (s.pictures > 2 * kMaxPictures) {
             s.goOn();
         }
-    } else if (s.crossing) {
-        if (!s.pressed || ++s.pictures > kMaxPictures || (p - s.tipMm).norm() < kThereMm) s.crossing = false;
+    } else if (s.travelling) {
+        if (s.lastPixel && s.sight)
+            s.aim(*s.lastPixel - s.lagPixels);
+        else
+            s.travel();
     }
     s.holdBack();
     s.send();
@@ -408,6 +445,8 @@ void PointerController::press(const Vec2& pixel, bool turning) {
     if (!s.pressed) {
         s.idlePictures = 0;
         s.pressed = true;
+        s.stroke.reset();
+        if (s.feel) s.feel->beginStroke();
         if (std::exchange(s.away, false)) {
             if (pixel.allFinite()) s.aim(pixel);
         } else if (pixel.allFinite() && !s.lifting) {
@@ -418,9 +457,8 @@ void PointerController::press(const Vec2& pixel, bool turning) {
                     s.lagPixels += at - *there;
                     at = *there;
                 }
+            s.travelling = s.proxyMm && (*s.proxyMm - s.tipMm).norm() > kStraightMm;
             s.aim(at);
-            s.crossing = s.proxyMm && (*s.proxyMm - s.tipMm).norm() > kHoverMm + kThereMm;
-            s.pictures = 0;
         }
         if (pixel.allFinite()) s.lastPixel = pixel;
     }
@@ -431,7 +469,8 @@ void PointerController::release() {
     State& s = *state_;
     if (!s.pressed) return;
     const bool wasDown = s.presses();
-    s.pressed = s.crossing = false;
+    s.pressed = false;
+    s.stroke.reset();
     if (wasDown) {
         s.lift();
         if (s.clearMm(s.place()) > -kHoverMm && !s.liftsTurning) {
@@ -462,7 +501,7 @@ void PointerController::nudge(double rightMm, double upMm, double advanceMm) {
         s.send();
         return;
     }
-    s.lifting = false;
+    s.lifting = s.travelling = false;
     s.sight.reset();
     s.tipMm += rightMm * s.camera.right() + upMm * s.camera.upward() - advanceMm * s.axis();
     if (s.touching && s.proxyMm) {
@@ -480,14 +519,15 @@ void PointerController::pivot(const Vec2& pixels) {
     const Vec3 towards = pixels.x() * s.camera.right() + pixels.y() * s.camera.upward();
     const Vec3 turn = s.axis().cross(towards) * kPivotRadPerPixel;
     const double angle = turn.norm();
-    if (angle > 1e-9) s.orientation = normalised(core::rotationAbout(turn / angle, angle) * s.orientation);
+    if (angle > 1e-9) s.turnTo(normalised(core::rotationAbout(turn / angle, angle) * s.orientation));
+    s.isOwn = true;
     s.send();
 }
 
 void PointerController::roll(double radians) {
     State& s = *state_;
     if (!std::isfinite(radians)) return;
-    s.orientation = normalised(s.orientation * core::rotationAbout(Vec3::UnitZ(), radians));
+    s.turnTo(normalised(s.orientation * core::rotationAbout(Vec3::UnitZ(), radians)));
     s.send();
 }
 
@@ -498,18 +538,31 @@ void PointerController::alignToNormal() {
     if (!surface) surface = s.cast({s.place() + kHoverMm * s.axis(), -s.axis()});
     if (!surface) return;
     s.turnAxisTo(surface->normal);
+    s.isOwn = true;
     s.send();
 }
 
 void PointerController::alignToTooth() {
     state_->turnAxisTo(Vec3::UnitZ());
+    state_->isOwn = false;
     state_->send();
+}
+
+void PointerController::faceEye() {
+    State& s = *state_;
+    const Vec3 towards = -s.camera.forward();
+    const Vec3 to = std::abs(towards.y()) > kSeenFromSide ? towards : Vec3(Vec3::UnitZ());
+    s.own = normalised(core::rotationBetween(s.own * Vec3::UnitZ(), to) * s.own);
+    s.unreached.reset();
+    s.isOwn = false;
+    if (!s.feel) s.orientation = s.own;
+    s.aimAgain();
 }
 
 void PointerController::turnHandle(const Vec3& toHand) {
     State& s = *state_;
     if (!toHand.allFinite()) return;
-    s.orientation = handleTowards(s.orientation, toHand);
+    s.turnTo(handleTowards(s.orientation, toHand));
     s.send();
 }
 
@@ -527,10 +580,15 @@ void PointerController::setLoad(double loadN) {
 void PointerController::setStop(std::optional<double> depthMm) {
     if (depthMm && !std::isfinite(*depthMm)) return;
     State& s = *state_;
-    s.stopMm = depthMm ? std::optional(std::clamp(*depthMm, 0.0, kReachMm)) : depthMm;
-    if (s.sight && s.sight->touchAt) s.findEnd(*s.sight);
-    s.holdBack();
-    s.send();
+    s.limits.stopMm = depthMm ? std::optional(std::clamp(*depthMm, 0.0, kReachMm)) : depthMm;
+    s.limitsChanged();
+}
+
+void PointerController::setPerPass(std::optional<double> depthMm) {
+    if (depthMm && !std::isfinite(*depthMm)) return;
+    State& s = *state_;
+    s.limits.perPassMm = depthMm ? std::optional(std::clamp(*depthMm, kMinPerPassMm, kMaxPerPassMm)) : depthMm;
+    s.limitsChanged();
 }
 
 void PointerController::freeze(bool frozen) {
@@ -541,7 +599,8 @@ void PointerController::freeze(bool frozen) {
 
 void PointerController::escape() {
     State& s = *state_;
-    s.pressed = s.lifting = s.crossing = false;
+    s.pressed = s.lifting = s.travelling = s.noReach = false;
+    s.stroke.reset();
     s.latched = s.turning = s.frozen = s.rebase = false;
     s.away = true;
     s.tipMm = s.place();
@@ -552,13 +611,17 @@ void PointerController::escape() {
 PointerController::Idle PointerController::idle() const noexcept {
     const State& s = *state_;
     if (!s.pressed || !s.turning || s.frozen || s.away) return Idle::no;
-    if (s.lifting || s.crossing) return Idle::onItsWay;
+    if (s.noReach) return Idle::noReach;
+    if (s.lifting || s.travelling) return Idle::onItsWay;
     if (!s.sight || !s.sight->touchAt) return Idle::offTooth;
+    if (!s.isOnStroke()) return Idle::offStroke;
     if (s.idlePictures >= kPatientPictures) {
         if (s.stalled) return Idle::stalled;
         const double end = std::min(s.sight->endAt, s.endHereMm);
         if ((s.place() - s.sight->ray.originMm).dot(s.sight->ray.direction) > end - kThereMm)
-            return s.sight->byStop ? Idle::atStop : Idle::through;
+            return s.sight->end == LineOfSight::End::atStop     ? Idle::atStop
+                   : s.sight->end == LineOfSight::End::passDone ? Idle::passDone
+                                                                : Idle::through;
         if (s.touching) return Idle::held;
     }
     return s.touching ? Idle::no : Idle::onItsWay;
@@ -570,7 +633,10 @@ double PointerController::loadN() const noexcept {
     return state_->loadN;
 }
 std::optional<double> PointerController::stopMm() const noexcept {
-    return state_->stopMm;
+    return state_->limits.stopMm;
+}
+std::optional<double> PointerController::perPassMm() const noexcept {
+    return state_->limits.perPassMm;
 }
 bool PointerController::isPressed() const noexcept {
     return state_->pressed;
@@ -586,13 +652,6 @@ std::optional<Vec3> PointerController::rest() const noexcept {
 }
 const device::PointerTarget& PointerController::target() const noexcept {
     return state_->target;
-}
-
-PointerController::Feel feelUncut(std::shared_ptr<const tooth::ToothModel> tooth,
-                                  std::shared_ptr<const instrument::Bur> bur) {
-    if (tooth == nullptr || bur == nullptr) return {};
-    const std::shared_ptr<contact::Method> method = contact::makeFieldMethod(std::move(tooth), std::move(bur));
-    return [method](const core::Pose& pose) { return method->depth(pose); };
 }
 
 }  // namespace handpiece::input

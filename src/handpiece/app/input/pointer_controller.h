@@ -4,35 +4,37 @@
 /// From mouse and keyboard to what the simulated hand shall do. Knows no window: pixels, modifiers and milliseconds in,
 /// targets out.
 ///
-/// **Like a brush.** The hand is guided by two things alone: the line of sight through the pointer, and the tooth as it
-/// was before any cut. What has been cut moves nothing sideways.
+/// **Like a brush.** The hand is guided by the line of sight through the pointer and by the mouth as it was before any
+/// cut: teeth, gingiva, bone. What has been cut moves nothing sideways.
 ///
-/// - The bur, in its orientation, is led along that line until it would touch the uncut tooth. Half a millimetre before
-///   that it hovers.
-/// - Pressed, it goes on along the line, with the load, as far as tissue gives way and the depth stop lets it. On the
-///   screen that does not move it: its tip is under the pointer at every depth.
-/// - Where tissue holds it back across the line (in a groove, with the pointer beyond the wall) it pulls towards the
-///   pointer with the load, and cuts its way there.
-/// - Where the pointer comes over an edge that hides what lies behind, the bur is lifted out and put down again: it
-/// does
-///   not go through.
+/// - The bur is led along that line until it would touch what it meets there first. Half a millimetre before that it
+///   hovers. It is held so that head, shank and handle are clear there, as near to the student's own tilt as can be
+///   (holding.h).
+/// - Pressed, it goes on along the line, with the load, as far as tissue gives way, and no deeper than the depth stop
+///   and the depth of a pass: that counts from the tooth as it was when the stroke began. On the screen that does not
+///   move it: its tip is under the pointer at every depth.
+/// - Where tissue holds it back across the line it pulls towards the pointer with the load. The farther it falls
+///   behind, the shallower it goes, so that it comes along: a quick stroke is a shallow one.
+/// - The way to another place, over an edge or beyond something, is up, across and down again (way_over.h), with the
+///   pedal up.
+/// - A stroke stays on the tooth, or the gingiva, on which it began: beyond it the bur is held off.
 
 #include <functional>
 #include <memory>
 #include <optional>
 
+#include "handpiece/app/input/hand_feel.h"
 #include "handpiece/base/messages/haptic_sample.h"
-#include "handpiece/model/instrument/bur.h"
-#include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/view/camera.h"
-#include "handpiece/tick/contact/method.h"
 #include "handpiece/tick/device/pointer_device.h"
 
 namespace handpiece::input {
 
 inline constexpr double kHoverMm = 0.5, kMinLoadN = 0.1, kMaxLoadN = 3.0, kFirstLoadN = 1.0;
 inline constexpr double kNudgeMm = 0.1, kFineNudgeMm = 0.02, kSlowFactor = 0.2, kStopStepMm = 0.1;
+/// A stroke's depth, and the stop, that a mouse's hand begins with [judgements]: three passes to the stop.
+inline constexpr double kFirstPerPassMm = 0.5, kFirstStopMm = 1.5, kMinPerPassMm = 0.1, kMaxPerPassMm = 3.0;
 inline constexpr double kRestFactor = 0.5;  ///< of the pointer's way, with a finger rest [a judgement]
 
 /// Where a hand begins: the bur along the tooth's long axis some millimetres above its box, the handle out of the
@@ -45,12 +47,10 @@ class PointerController {
   public:
     /// Meets the tooth along a line of sight, as it is now.
     using Cast = std::function<std::optional<measure::Hit>(const view::Ray&)>;
-    /// How deep the bur would be, at a pose, in the tooth before any cut.
-    using Feel = std::function<contact::Depth(const core::Pose&)>;
     PointerController(std::shared_ptr<device::PointerMailbox> mailbox, const core::Pose& start, Cast cast);
 
     /// With every tooth and bur. Without it there is no tooth.
-    void setFeel(Feel feel);
+    void setFeel(std::shared_ptr<HandFeel> feel);
 
     /// Before every other call when the eye has moved.
     void setEye(const view::Camera& camera, const view::Viewport& viewport);
@@ -76,6 +76,9 @@ class PointerController {
     /// The bur's axis along the surface normal under the tip; along the tooth's long axis.
     void alignToNormal();
     void alignToTooth();
+    /// The bur's axis towards the eye, or along the tooth's long axis: as one looks at a side, or down on the tooth. It
+    /// is no tilt of the student's own.
+    void faceEye();
     /// About the bur's axis, so that the handle points to the hand (working_position.h).
     void turnHandle(const core::Vec3& toHand);
     /// A finger rests there: the bur goes kRestFactor of the pointer's way, and the handpiece turns about the rest as
@@ -85,6 +88,8 @@ class PointerController {
     /// How far beyond its first touch of the uncut tooth the bur goes: no place of its end lies deeper, along the bur,
     /// or, where it works with its side, along the line of sight. None: off.
     void setStop(std::optional<double> depthMm);
+    /// How deep one stroke goes below the tooth as it was when the stroke began. None: as far as the load takes it.
+    void setPerPass(std::optional<double> depthMm);
     /// The view is being turned: the bur stands still.
     void freeze(bool frozen);
     /// Escape, lost focus: pedal up, no press, the bur lifts. The next move or press brings it back.
@@ -95,6 +100,9 @@ class PointerController {
         no,        ///< it cuts, or is about to, or is not pressed
         offTooth,  ///< no tooth on the pointer's line of sight
         atStop,    ///< as deep as the depth stop allows
+        passDone,  ///< as deep as one stroke goes
+        offStroke, ///< on another tooth, or on gingiva, than that on which the stroke began
+        noReach,   ///< head, shank or handle would touch teeth or gingiva, however the handpiece is held
         through,   ///< no deeper here: beyond it comes out of the tooth
         onItsWay,  ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
         stalled,   ///< the drive stands
@@ -104,6 +112,7 @@ class PointerController {
     [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down
     [[nodiscard]] double loadN() const noexcept;
     [[nodiscard]] std::optional<double> stopMm() const noexcept;
+    [[nodiscard]] std::optional<double> perPassMm() const noexcept;
     [[nodiscard]] bool isPressed() const noexcept;
     [[nodiscard]] bool pedalLatched() const noexcept;
     [[nodiscard]] std::optional<core::Vec3> rest() const noexcept;
@@ -114,9 +123,5 @@ class PointerController {
     struct State;
     std::shared_ptr<State> state_;
 };
-
-/// What PointerController feels of a tooth with a bur. One thread.
-[[nodiscard]] PointerController::Feel feelUncut(std::shared_ptr<const tooth::ToothModel> tooth,
-                                                std::shared_ptr<const instrument::Bur> bur);
 
 }  // namespace handpiece::input

@@ -26,6 +26,7 @@ struct LiveTooth::Parts {
           inScene(toothInScene),
           turns(!inScene.isIdentity()),
           mirror(model, number),
+          strokeStart(model, number),
           source(mirror),
           fine(source, &model->tissues),
           coarse(source, &model->tissues),
@@ -36,6 +37,7 @@ struct LiveTooth::Parts {
     const core::Pose inScene;
     const bool turns;
     tooth::ToothMirror mirror;
+    tooth::ToothMirror strokeStart;  ///< as it was when the last stroke began; under the mutex
     surface::MirrorSource source;
     // The feeder's alone.
     surface::Surface fine, coarse;
@@ -201,7 +203,10 @@ LiveTooth::LiveTooth(std::shared_ptr<const tooth::ToothModel> model, const tooth
 }
 
 LiveTooth::LiveTooth(const SimulationSetup& station, const tooth::StateDelta& state, const core::Progress& progress)
-    : model_(station.tooth), teeth_(station.teeth()), parts_(std::make_unique<Parts>(model_, number_, inScene_)) {
+    : model_(station.tooth),
+      teeth_(station.teeth()),
+      parts_(std::make_unique<Parts>(model_, number_, inScene_)),
+      standing_(station.others) {
     if (!station.others.empty()) neighbours_ = std::make_unique<Neighbours>(station);
     build(state, progress);
 }
@@ -217,6 +222,7 @@ LiveTooth::LiveTooth(const StandingTooth& standing, const tooth::StateDelta& sta
 void LiveTooth::build(const tooth::StateDelta& state, const core::Progress& progress) {
     Parts& p = *parts_;
     probe_ = std::make_unique<measure::ToothProbe>(p.mirror);
+    strokeStart_ = std::make_unique<measure::ToothProbe>(p.strokeStart);
     // The probe makes the pulp's surface when it is first asked for, a tenth of a second: not under somebody's hands.
     const std::future<void> warmed =
         std::async(std::launch::async, [this] { (void)probe_->leftOverPulpMm(model_->outer.bounds().centre()); });
@@ -275,6 +281,11 @@ void LiveTooth::refresh() {
     std::unique_lock lock(mutex_);
     takeUpPending();
     shape(std::move(lock));
+}
+
+void LiveTooth::beginStroke() {
+    const std::lock_guard lock(mutex_);
+    parts_->strokeStart.follow(parts_->mirror);
 }
 
 void LiveTooth::settle() {

@@ -63,6 +63,15 @@ class LiveTooth {
         const std::lock_guard lock(mutex_);
         return f(*probe_);
     }
+    /// A stroke begins: withStrokeStart() is of the tooth as it is now, until the next one.
+    void beginStroke();
+    template <class F>
+    auto withStrokeStart(F&& f) const {
+        const std::lock_guard lock(mutex_);
+        return f(*strokeStart_);
+    }
+    /// What stands around the tooth.
+    [[nodiscard]] const std::vector<StandingTooth>& standing() const noexcept { return standing_; }
     /// Of the mouth, as far as it is kept up.
     [[nodiscard]] tooth::StateDelta state(const tooth::RemovedMm3& removedMm3) const;
     /// Waits for surfaces that are being made and brings all up to date: for pictures that are drawn once.
@@ -84,7 +93,8 @@ class LiveTooth {
     core::Pose inScene_;
     mutable std::mutex mutex_;
     std::unique_ptr<Parts> parts_;
-    std::unique_ptr<measure::ToothProbe> probe_;
+    std::unique_ptr<measure::ToothProbe> probe_, strokeStart_;
+    std::vector<StandingTooth> standing_;
     std::unique_ptr<Neighbours> neighbours_;  ///< null without any
     std::atomic<bool> hasNews_{false};
 };

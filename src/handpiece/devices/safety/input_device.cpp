@@ -231,6 +231,10 @@ void InputDevice::command(const Vec3& forceN, const Vec3& torqueNmm) noexcept {
     s.servo.commands().write(command);
 }
 
+void InputDevice::watch(const Vec3& tipMm, const Vec3& bearingN) noexcept {
+    state_->hand.watch(tipMm, bearingN);
+}
+
 void InputDevice::vibrate(double amplitudeN) noexcept {
     state_->humN = amplitudeN > 0.0 ? amplitudeN : 0.0;
 }

@@ -42,6 +42,7 @@ class InputDevice final : public device::Device {
     [[nodiscard]] const device::Capability& capability() const noexcept override;
     device::Reading read(double periodS) noexcept HANDPIECE_REALTIME override;
     void command(const core::Vec3& forceN, const core::Vec3& torqueNmm) noexcept HANDPIECE_REALTIME override;
+    void watch(const core::Vec3& tipMm, const core::Vec3& bearingN) noexcept HANDPIECE_REALTIME override;
     void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME override;
     core::Vec3 truePositionMm() const noexcept override;
     core::Vec3 appliedForceN() const noexcept override;

@@ -13,6 +13,14 @@ ToothMirror::ToothMirror(std::shared_ptr<const ToothModel> model, std::uint16_t 
     const std::size_t dense = model_->field.storage().coarse.size();
     bricks_.resize(dense);
     isTouched_.assign(dense, false);
+    isUnfollowed_.assign(dense, false);
+}
+
+/// Each once.
+void ToothMirror::note(std::uint32_t dense, std::vector<bool>& isIn, std::vector<std::uint32_t>& list) {
+    if (isIn[dense]) return;
+    isIn[dense] = true;
+    list.push_back(dense);
 }
 
 void ToothMirror::put(std::uint32_t dense, const float* values) {
@@ -23,9 +31,16 @@ void ToothMirror::put(std::uint32_t dense, const float* values) {
         if (!brick) brick = std::make_unique<std::array<float, field::kBrickValues>>();
         std::memcpy(brick->data(), values, kBrickBytes);
     }
-    if (isTouched_[dense]) return;
-    isTouched_[dense] = true;
-    touched_.push_back(dense);
+    note(dense, isTouched_, touched_);
+    note(dense, isUnfollowed_, unfollowed_);
+}
+
+void ToothMirror::follow(ToothMirror& other) {
+    for (const std::uint32_t dense : other.unfollowed_) {
+        put(dense, other.bricks_[dense] ? other.bricks_[dense]->data() : nullptr);
+        other.isUnfollowed_[dense] = false;
+    }
+    other.unfollowed_.clear();
 }
 
 void ToothMirror::apply(const BrickSnapshot& snapshot) {

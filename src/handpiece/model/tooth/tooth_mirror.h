@@ -23,6 +23,8 @@ class ToothMirror {
     void apply(const BrickSnapshot& snapshot);
     /// What it says of other teeth is left alone.
     void apply(const StateDelta& change);
+    /// Becomes as another mirror of the same tooth is; costs what has changed in that since the last call.
+    void follow(ToothMirror& other);
     /// Values of a brick now; `scratch` (kBrickValues) is used when it is still uncut.
     [[nodiscard]] const float* values(std::uint32_t dense, float* scratch) const;
     [[nodiscard]] bool isChanged(std::uint32_t dense) const;
@@ -32,12 +34,13 @@ class ToothMirror {
 
   private:
     void put(std::uint32_t dense, const float* values);
+    void note(std::uint32_t dense, std::vector<bool>& isIn, std::vector<std::uint32_t>& list);
 
     std::shared_ptr<const ToothModel> model_;
     std::uint16_t tooth_;
     std::vector<std::unique_ptr<std::array<float, field::kBrickValues>>> bricks_;  ///< by dense brick; null: uncut
-    std::vector<std::uint32_t> touched_;
-    std::vector<bool> isTouched_;
+    std::vector<std::uint32_t> touched_, unfollowed_;  ///< by takeTouched(), by follow()
+    std::vector<bool> isTouched_, isUnfollowed_;
 };
 
 /// The teeth of a mouth that can be cut, by their numbers: null where one cannot. The first is the one worked on.

@@ -28,6 +28,10 @@ struct Capability {
 
 enum class ReadStatus : std::uint8_t { ok, lost };
 
+/// A simulated hand takes the handpiece out of the mouth and brings it in again: on the way it touches nothing, without
+/// force, and until it is clear. A button, since those are recorded to the bit and replayed. No device's own.
+inline constexpr std::uint32_t kRegripsButton = 1u << 31;
+
 /// The handpiece's pose as the device reports it.
 struct Reading {
     core::Pose burInTooth;
@@ -47,11 +51,11 @@ class Device {
     /// Amplitude of the bur's hum [N], which is in the force already: for what has no force but can shake. Each tick,
     /// after command().
     virtual void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME { (void)amplitudeN; }
-    /// Where the bur rests on the tooth and with what load it presses there [N]: for a simulated hand, which watches
-    /// its tip as a person does. Each tick, before command().
-    virtual void watch(const core::Vec3& tipMm, const core::Vec3& loadN) noexcept HANDPIECE_REALTIME {
+    /// Where the bur rests and with what force the whole instrument bears on what it meets there [N], wherever that is:
+    /// for a simulated hand, which watches its tip as a person does. Each tick, before command().
+    virtual void watch(const core::Vec3& tipMm, const core::Vec3& bearingN) noexcept HANDPIECE_REALTIME {
         (void)tipMm;
-        (void)loadN;
+        (void)bearingN;
     }
     /// For records: where the device truly is and what force acts on it now. Real devices return what they know.
     virtual core::Vec3 truePositionMm() const noexcept = 0;

@@ -18,8 +18,8 @@ class PassingDevice : public Device {
         inner_->command(forceN, torqueNmm);
     }
     void vibrate(double amplitudeN) noexcept HANDPIECE_REALTIME override { inner_->vibrate(amplitudeN); }
-    void watch(const core::Vec3& tipMm, const core::Vec3& loadN) noexcept HANDPIECE_REALTIME override {
-        inner_->watch(tipMm, loadN);
+    void watch(const core::Vec3& tipMm, const core::Vec3& bearingN) noexcept HANDPIECE_REALTIME override {
+        inner_->watch(tipMm, bearingN);
     }
     core::Vec3 truePositionMm() const noexcept override { return inner_->truePositionMm(); }
     core::Vec3 appliedForceN() const noexcept override { return inner_->appliedForceN(); }

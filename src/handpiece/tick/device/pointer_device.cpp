@@ -29,13 +29,17 @@ constexpr double kMinN = 1e-9;          // a load that has a direction
 // low pass; what is then left goes slowly, or a bur that cuts would swing round its place.
 constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
 constexpr double kMaxShare = 0.8;  // of an error, in one tick
+// What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
+constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
+// A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
+constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
 
 /// What the hand is asked to do, once it has been found to make sense.
 struct Wish {
     Vec3 positionMm = Vec3::Zero();
     Quat orientation = Quat::Identity();
-    double pedal = 0.0, loadN = 0.0, farMm = 0.0;
-    bool isLed = false, frozen = false, away = false;
+    double pedal = 0.0, loadN = 0.0, mostN = 0.0, farMm = 0.0, passMm = 0.0;
+    bool isLed = false, regrips = false, frozen = false, away = false;
     Vec3 way = Vec3::Zero();
 
     [[nodiscard]] bool presses() const noexcept { return loadN > 0.0 && !way.isZero() && !frozen && !away; }
@@ -54,14 +58,18 @@ bool understand(const PointerTarget& target, double mostLoadN, Wish& wish) noexc
     const Vec3 way(target.way[0], target.way[1], target.way[2]);
     const double way2 = way.squaredNorm();
     if (way2 != 0.0 && !(std::abs(way2 - 1.0) < 1e-6)) return false;
-    if (!(std::abs(target.farMm) < kMaxPlaceMm)) return false;
+    if (!(std::abs(target.farMm) < kMaxPlaceMm) || !std::isfinite(target.passMm) || !std::isfinite(target.mostN))
+        return false;
     wish.positionMm = Vec3(target.positionMm[0], target.positionMm[1], target.positionMm[2]);
     wish.orientation = Quat(q[0], q[1], q[2], q[3]).normalized();
     wish.pedal = std::clamp(target.pedal, 0.0, 1.0);
     wish.loadN = std::clamp(target.loadN, 0.0, mostLoadN);
     wish.way = way;
+    wish.mostN = std::max(target.mostN, 0.0);
     wish.farMm = target.farMm;
+    wish.passMm = target.passMm;
     wish.isLed = target.isLed;
+    wish.regrips = target.regrips;
     wish.frozen = target.frozen;
     wish.away = target.away;
     return true;
@@ -124,6 +132,8 @@ PointerDevice::PointerDevice(PointerHandSettings settings, std::shared_ptr<Point
     require(settings.followS >= 1e-3 && settings.followS <= 1, "a hand's delay [s]", settings.followS);
     require(settings.approachMmS > 0 && settings.approachMmS <= 1000, "an approach [mm/s]", settings.approachMmS);
     require(settings.travelMmS > 0 && settings.travelMmS <= 2000, "a travel [mm/s]", settings.travelMmS);
+    require(settings.farthestMm >= 0.1 && settings.farthestMm <= 100, "a hand that is [mm] from the bur",
+            settings.farthestMm);
     require(settings.turnRadS > 0 && settings.turnRadS <= 100, "a turn [rad/s]", settings.turnRadS);
     require(settings.liftMm >= 0 && settings.liftMm <= 100, "a lift [mm]", settings.liftMm);
     require(settings.subStepS >= 1e-6 && settings.subStepS <= 1e-3, "a sub-step [s]", settings.subStepS);
@@ -173,7 +183,8 @@ Reading PointerDevice::read(double periodS) noexcept {
     s.started = true;
     Reading reading;
     reading.burInTooth = {s.positionMm, s.orientation};
-    reading.pedal = s.wish.away ? 0.0 : s.wish.pedal;
+    reading.pedal = s.wish.away || s.wish.regrips ? 0.0 : s.wish.pedal;
+    if (s.wish.regrips) reading.buttons |= kRegripsButton;
     return reading;
 }
 
@@ -181,12 +192,12 @@ void PointerDevice::command(const Vec3& forceN, const Vec3& /*torqueNmm: no torq
     state_->forceN = forceN.allFinite() ? forceN : Vec3(Vec3::Zero());
 }
 
-void PointerDevice::watch(const Vec3& tipMm, const Vec3& loadN) noexcept {
+void PointerDevice::watch(const Vec3& tipMm, const Vec3& bearingN) noexcept {
     State& s = *state_;
-    s.watches = tipMm.allFinite() && loadN.allFinite();
+    s.watches = tipMm.allFinite() && bearingN.allFinite();
     if (!s.watches) return;
     s.tipMm = tipMm;
-    s.pressN = loadN;
+    s.pressN = bearingN;
 }
 
 /// Between the two ways nothing jumps.
@@ -229,7 +240,8 @@ void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexc
     if (wasPressing) return;
     // It cannot want what the tooth keeps it from by more than it can pull; held like that it does not go on wanting.
     const Vec3 stretch = wantedMm - positionMm;
-    const double length = stretch.norm(), most = settings.mostPullN / settings.stiffnessNPerMm;
+    const double mostN = wish.mostN > 0.0 ? std::min(wish.mostN, settings.mostPullN) : settings.mostPullN;
+    const double length = stretch.norm(), most = mostN / settings.stiffnessNPerMm;
     if (length <= most) return;
     const Vec3 outward = stretch / length;
     wantedMm = positionMm + most * outward;
@@ -258,7 +270,10 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
         pressN.setZero();
     }
     const Vec3 left = wantedMm - tipMm, moved = wantedMm - wasWantedMm, beside = across(left);
-    const double most = settings.approachMmS * periodS, ahead = left.dot(way) + wish.farMm, allN = pressN.norm();
+    // Left behind it comes up, as far as the surface was when the stroke began: no wall holds it there.
+    const double up = wish.isLed ? 0.0 : std::clamp((beside.norm() - kBehindMm) / kUpMm, 0.0, 1.0);
+    const double endMm = wish.farMm + up * (std::min(wish.passMm - kOverMm, wish.farMm) - wish.farMm);
+    const double most = settings.approachMmS * periodS, ahead = left.dot(way) + endMm, allN = pressN.norm();
     const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
     const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
@@ -269,7 +284,10 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
                 (wish.isLed ? Vec3(back * over) : Vec3(across(moved) + share * (over + gain * beside + settledMm)));
     // Against the tooth no farther than the load goes, whichever way.
     if (allN > kMinN) step -= std::max(0.0, step.dot(pressN) / allN - missing) / allN * pressN;
-    step = heldTo(step, settings.travelMmS * periodS);
+    step = heldTo(step, std::min(settings.travelMmS * periodS,
+                                kStepShare * wish.loadN / k * std::max(1.0, periodS / kUsualPeriodS)));
+    // Whatever held the bur off without being told of: the hand is near it.
+    step = tipMm + heldTo(positionMm + step - tipMm, settings.farthestMm) - positionMm;
     positionMm += step;
     velocityMmS = step / periodS;
 }

@@ -21,9 +21,14 @@ struct PointerTarget {
     /// The way in, unit: along the line of sight, where one does not see the bur move. Zero: none, the place alone
     /// counts.
     double way[3]{0, 0, 0};
-    double farMm = 0.0;   ///< along it from the place: where the tip is to be, or to stop
+    double farMm = 0.0;  ///< along it from the place: where the tip is to be, or to stop
+    /// Along it: where the surface lay when the stroke began. A tip that is left behind by the pointer comes up to
+    /// there, so that a quick stroke is a shallow one. From `farMm` on: it stays as deep as it is.
+    double passMm = 1e4;
     double loadN = 0.0;   ///< with which the bur presses on the tooth, along the way as far as that goes; 0: not at all
+    double mostN = 0.0;   ///< of a hand without a load, on whatever it meets; 0: PointerHandSettings::mostPullN
     bool isLed = false;   ///< across the way it gives way to the tooth: out of a cavity, not through its wall
+    bool regrips = false;  ///< on its way it meets nothing: Reading::buttons says kRegripsButton
     bool frozen = false;  ///< the hand stands where it is (the view is being turned)
     bool away = false;    ///< Escape, lost focus: pedal up, the bur is lifted along its axis
 };
@@ -36,8 +41,9 @@ using PointerMailbox = rt::TripleBuffer<PointerTarget>;
 /// hand wants it. With a way it comes out along that before it goes across: what is in front of the way is air.
 ///
 /// With a load it watches its tip, as a person does: across the way it moves until the tip, not the hand, is where the
-/// pointer is, and along the way it presses. Of all its force on the tooth there is never more than the load: what it
-/// needs to keep the tip in its place on a slope, or pulls sideways at a wall, it does not press with.
+/// pointer is, and along the way it presses. Of all its force there is never more than the load, whether bur, shank,
+/// head or handle bears it, on tooth or gingiva: what it needs to keep the tip in its place on a slope, or pulls
+/// sideways at a wall, it does not press with. Nor is it ever farther than `farthestMm` from where the bur rests.
 struct PointerHandSettings {
     double massKg = 0.05;
     double stiffnessNPerMm = 4.0;   ///< of the spring; and how fast the load falls to none where the way ends
@@ -46,6 +52,7 @@ struct PointerHandSettings {
     double followS = 0.012;         ///< behind a pointer that moves evenly
     double approachMmS = 20.0;      ///< fastest along the way while it presses, in the air too
     double travelMmS = 400.0;       ///< fastest of a hand that follows the pointer
+    double farthestMm = 5.0;        ///< of a hand that presses, from where the bur rests
     double turnRadS = 12.0;
     double liftMm = 5.0;  ///< when away
     double subStepS = 50e-6;

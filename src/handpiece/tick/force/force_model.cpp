@@ -193,6 +193,7 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
     softN_.setZero();
     command_.forceLimited = command_.slopeLimited = false;
     command_.loadN.setZero();
+    command_.bearingN.setZero();
     if (guard_.faulted()) {
         if (!wasFaulted_) heldForceN_ = last;
         wanted = guard_.gain() * heldForceN_;
@@ -206,6 +207,7 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         if (!wanted.allFinite()) wanted.setZero();
         const double press = wanted.norm();
         command_.loadN = -guard_.gain() * std::min(1.0, limits_.maxForceN / std::max(press, kShallowMm)) * wanted;
+        command_.bearingN = command_.loadN;
         // What bears on the shank, the head or a tooth that is not cut does not press the bur into what is.
         if (touch.isHeldOnly) command_.loadN = -command_.loadN.norm() * touch.cutShare;
         if (law_->usesProxy()) wanted += frictionForce(touch, wanted, turning);
@@ -216,7 +218,10 @@ const ForceCommand& ForceModel::compute(const Touch& touch, double periodS, cons
         wanted += parameters_.cuttingForceMultiplier * tangentialN_;
         for (const contact::SoftTouch& soft : touch.soft)
             softN_ += softN(soft);
-        if (!touch.soft.empty()) wanted += softN_;
+        if (!touch.soft.empty()) {
+            wanted += softN_;
+            command_.bearingN -= guard_.gain() * softN_;
+        }
         const double size = wanted.norm();
         command_.forceLimited = size > limits_.maxForceN;
         if (command_.forceLimited) wanted *= limits_.maxForceN / size;

@@ -22,6 +22,9 @@ struct ForceCommand {
     core::Vec3 torqueNmm = core::Vec3::Zero();      ///< about the grip, within the device's torque axes (zero without)
     core::Vec3 fullTorqueNmm = core::Vec3::Zero();  ///< about the grip, whatever the device can do
     core::Vec3 loadN = core::Vec3::Zero();          ///< with which the bur presses on the tooth: without friction
+    /// With which bur, shank, head and handle bear on all that they meet, gingiva too: what a hand feels that way. As
+    /// `loadN` where the bur alone touches a tooth that can be cut.
+    core::Vec3 bearingN = core::Vec3::Zero();
     bool forceLimited = false, slopeLimited = false;
 };
 

@@ -76,7 +76,7 @@ void HapticLoop::tick(const rt::Beat& beat) noexcept {
     const force::Touch& touch = force_.feel(*work_.current()->value.method, reading.burInTooth, lost, elapsedS);
     // Compute the force.
     const force::ForceCommand& command = force_.compute(touch, elapsedS, turning_);
-    device_->watch(touch.proxyInTooth.positionMm, command.loadN);
+    device_->watch(touch.proxyInTooth.positionMm, command.bearingN);
     // Send it to the hand, with the knock and the hum that make it crisp and that cut nothing.
     device_->command(eventForce_.add(force_, touch, command, {rotor_.speedRpm(), cut_.feedMmS}, elapsedS),
                      command.torqueNmm);
@@ -102,6 +102,7 @@ device::Reading HapticLoop::readDevice(double elapsedS) noexcept {
             rounded(reading.burInTooth.orientation.coeffs()[k], messages::kOrientationStep);
     reading.pedal =
         std::isfinite(reading.pedal) ? rounded(std::clamp(reading.pedal, 0.0, 1.0), messages::kPedalStep) : 0.0;
+    if ((reading.buttons & device::kRegripsButton) != 0) force_.waitUntilClear();
     return reading;
 }
 

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+// Presses and drags at random about whole mouths. HANDPIECE_POINTER_SWEEP=N: so many of each mouth.
+#include "app/input/mouth_course.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <map>
+
+#include "support/random.h"
+
+namespace handpiece::input {
+namespace {
+
+using core::Vec2;
+using core::Vec3;
+using Idle = PointerController::Idle;
+
+Mouth& mouthAt(int fdi) {
+    static std::map<int, std::unique_ptr<Mouth>> made;
+    std::unique_ptr<Mouth>& mouth = made[fdi];
+    static const test::TemporaryFolder own;
+    const char* kept = std::getenv("HANDPIECE_KEPT_CASES");
+    if (!mouth) mouth = std::make_unique<Mouth>(fdi, kept ? kept : own.path());
+    return *mouth;
+}
+
+const char* nameOf(Idle idle) {
+    constexpr const char* kNames[] = {"cuts",     "off tooth", "at stop", "pass done", "off stroke",
+                                      "no reach", "through",   "on way",  "stalled",   "held"};
+    return kNames[static_cast<int>(idle)];
+}
+
+void print(const MouthWay& way, const MouthFigures& f) {
+    std::printf("  | %s | %s | %d | %.1f | %.3f | %.3f | %s | %d | %.2f | %.2f | %.3f | %.4f | %.3f |\n",
+                way.name.c_str(), way.bur.c_str(), static_cast<int>(way.eye), way.loadN, f.offMm, f.notNearestMm,
+                nameOf(f.said), f.tooHard, f.mostN, f.mostAwayMm, f.removedMm3, f.outsideMm3, f.othersMm3);
+    std::fflush(stdout);
+}
+
+TEST(MouthCourse, pressesAndDragsAtRandom) {
+    const char* asked = std::getenv("HANDPIECE_POINTER_SWEEP");
+    const int many = asked ? std::max(1, std::atoi(asked)) : 6;
+    std::mt19937_64 random(test::seed());
+    int tooHard = 0, outside = 0, near = 0, told = 0, all = 0;
+    std::vector<int> mouths{46, 33, 16};
+    if (const char* only = std::getenv("HANDPIECE_ONLY")) mouths = {std::atoi(only)};
+    for (const int fdi : mouths) {
+        Mouth& mouth = mouthAt(fdi);
+        for (int i = 0; i < many; ++i) {
+            static const char* const kBurs[] = {"330", "round-4", "556", "round-1/4", "245"};
+            MouthWay way;
+            way.name = std::to_string(fdi) + "/" + std::to_string(i);
+            way.bur = kBurs[random() % 5];
+            way.eye = view::standardViews()[random() % 6].first;
+            way.isLeftHanded = random() % 2 == 0;
+            way.loadN = std::array{0.3, 1.0, 3.0}[random() % 3];
+            const double u = test::uniform(random, 0.3, 0.7), v = test::uniform(random, 0.3, 0.7);
+            const Vec2 from(900.0 * u, 700.0 * v);
+            const double angle = test::uniform(random, 0.0, 6.283), length = test::uniform(random, 0.0, 120.0);
+            const double speed = std::exp(test::uniform(random, std::log(15.0), std::log(400.0)));
+            const Vec2 to = from + length * Vec2(std::cos(angle), std::sin(angle));
+            const double dwellS = 0.25, lastsS = length / speed;
+            way.releaseS = way.pressS + dwellS + lastsS + 0.45;
+            way.endS = way.releaseS + 0.3;
+            way.at = [=](double t) {
+                return Vec2(from + std::clamp((t - 0.65) / std::max(lastsS, 1e-6), 0.0, 1.0) * (to - from));
+            };
+            const auto t0 = std::chrono::steady_clock::now(); const auto c0 = std::clock();
+            MouthCourse course(mouth, way);
+            const double made = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
+            const MouthFigures f = course.play();
+            std::printf("    made %.2f s, all %.2f s, cpu %.2f s for %.2f s\n", made, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count(), double(std::clock() - c0) / CLOCKS_PER_SEC, way.endS);
+            const bool isNear = f.notNearestMm < 0.15, isTold = !isNear && f.said != Idle::no;
+            ++all;
+            near += isNear;
+            told += isTold;
+            tooHard += f.tooHard > 0;
+            outside += f.outsideMm3 > 0.001;
+            if (many <= 10 || !isNear || f.tooHard > 0 || f.outsideMm3 > 0.001) print(way, f);
+        }
+    }
+    std::printf("  %d ways: %d near, %d told why not; %d bore too hard, %d cut outside\n", all, near, told, tooHard,
+                outside);
+    EXPECT_EQ(near + told, all);
+    EXPECT_EQ(tooHard, 0);
+    EXPECT_EQ(outside, 0);
+}
+
+}  // namespace
+}  // namespace handpiece::input

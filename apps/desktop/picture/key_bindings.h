@@ -22,6 +22,7 @@ enum class Action {
     zoom,
     load,
     stop,
+    pass,
     slow,  // buttons, wheel, modifier
     orbitHold,
     panHold,

@@ -29,7 +29,7 @@ struct OverlayState {
     // The hand; without one nothing of it is shown.
     bool hasHand = false;
     double loadN = 0.0;
-    std::optional<double> stopMm;
+    std::optional<double> stopMm, perPassMm;
     bool pedalDown = false, pedalLatched = false, away = false, pressed = false;
 
     std::vector<Measurement> measurements;

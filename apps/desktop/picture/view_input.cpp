@@ -368,6 +368,7 @@ void ViewWidget::State::turnWheel(const QWheelEvent& event) {
     }
     if (*action == Action::load) stepLoad(notches);
     if (*action == Action::stop) stepStop(notches);
+    if (*action == Action::pass) stepPerPass(notches);
 }
 
 void ViewWidget::State::zoomBy(double notches, const QPointF& at) {
@@ -392,6 +393,20 @@ void ViewWidget::State::stepStop(double notches) {
         widget->setStop(std::nullopt);
     else
         widget->setStop(std::min(next, kMaxStopMm));
+}
+
+void ViewWidget::State::stepPerPass(double notches) {
+    if (!hand) return;
+    if (!hand->perPassMm()) {
+        if (notches < 0) widget->setPerPass(lastPerPassMm);
+        return;
+    }
+    const double next = std::round((*hand->perPassMm() + notches * input::kStopStepMm) * 10.0) / 10.0;
+    // Beyond the deepest a pass is as deep as the load takes it.
+    if (next > input::kMaxPerPassMm + 1e-9)
+        widget->setPerPass(std::nullopt);
+    else
+        widget->setPerPass(std::max(next, input::kMinPerPassMm));
 }
 
 void ViewWidget::wheelEvent(QWheelEvent* event) {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "handpiece/app/simulation/mouth_feel.h"
+
 namespace handpiece::desktop {
 namespace {
 
@@ -201,8 +203,8 @@ void ViewWidget::State::hoverAgain() {
     hand->move(pixel(*pointer));
 }
 
-void ViewWidget::State::feelUncut() {
-    if (hand) hand->setFeel(tooth ? input::feelUncut(tooth->modelShared(), bur) : input::PointerController::Feel());
+void ViewWidget::State::feelMouth() {
+    if (hand) hand->setFeel(simulation::feelMouth(tooth, bur));
 }
 
 void ViewWidget::State::followHand() {
@@ -246,6 +248,12 @@ static QString idleText(input::PointerController::Idle idle) {
             return ViewWidget::tr("No tooth under the pointer");
         case Idle::atStop:
             return ViewWidget::tr("At the depth stop");
+        case Idle::passDone:
+            return ViewWidget::tr("As deep as one pass goes: let go and press again to go deeper");
+        case Idle::offStroke:
+            return ViewWidget::tr("Off what this stroke began on: let go, and press here to work here");
+        case Idle::noReach:
+            return ViewWidget::tr("The handpiece cannot get there: turn the view, tilt it or take another bur");
         case Idle::through:
             return ViewWidget::tr("No deeper here: the bur would come out of the tooth");
         case Idle::onItsWay:
@@ -314,6 +322,7 @@ OverlayState ViewWidget::State::overlay() const {
         state.hasHand = true;
         state.loadN = hand->loadN();
         state.stopMm = hand->stopMm();
+        state.perPassMm = hand->perPassMm();
         state.pedalLatched = hand->pedalLatched();
         // The foot's, not the bur's: that comes out of its cavity turning after the button is up.
         state.pedalDown = hand->target().pedal > 0.0 && (hand->isPressed() || hand->pedalLatched());

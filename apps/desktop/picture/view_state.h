@@ -69,7 +69,7 @@ struct ViewWidget::State {
     std::optional<QPointF> cross;    // in the pointer's place, moved by keys; the mouse takes it away
     bool byMouse = false;            // the bur is where the pointer put it, not where keys moved it
     double wheelRest = 0.0;          // of a notch
-    double lastStopMm = 1.5;
+    double lastStopMm = input::kFirstStopMm, lastPerPassMm = input::kFirstPerPassMm;
 
     QPointer<HelpCard> card;
     HelpCard::Commands commands;  // of the window, for the card
@@ -103,7 +103,7 @@ struct ViewWidget::State {
     void eyeMoved();    // and the hand, and listeners
     void hoverAgain();  // under the pointer that stood still while the eye moved
     void followHand();
-    void feelUncut();  // the hand, of this tooth and bur
+    void feelMouth();  // the hand, of this tooth, bur and what stands around
     void takeFrame();
     void layOut();
     [[nodiscard]] bool allows(exercise::Operation operation) const { return permissions.allows(operation); }
@@ -122,6 +122,7 @@ struct ViewWidget::State {
     void zoomBy(double notches, const QPointF& at);
     void stepLoad(double notches);
     void stepStop(double notches);
+    void stepPerPass(double notches);
     void putCross(const QPointF& at);
     [[nodiscard]] bool measures() const;  // by points on the tooth
     bool pickByKeys(Action action, bool slow, bool repeated);

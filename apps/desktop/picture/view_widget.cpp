@@ -139,7 +139,7 @@ void ViewWidget::setPointer(std::shared_ptr<device::PointerMailbox> mailbox, con
         });
     s.hand->setEye(s.handsEye(), s.viewport());
     s.hand->setRest(s.restMm);
-    s.feelUncut();
+    s.feelMouth();
     if (s.tool != Tool::drill) s.hand->freeze(true);
     update();
 }
@@ -167,7 +167,7 @@ messages::HapticSample ViewWidget::sample() const {
 void ViewWidget::setBur(std::shared_ptr<const instrument::Bur> bur) {
     State& s = *state_;
     s.bur = bur;
-    s.feelUncut();
+    s.feelMouth();
     s.render->setBur(std::move(bur));
 }
 
@@ -197,6 +197,7 @@ const view::Camera& ViewWidget::camera() const {
 void ViewWidget::showStandardView(view::StandardView standardView) {
     const view::Viewport port = state_->viewport();
     setCamera(clearOfWriting(view::standardView(standardView, state_->eyeBounds, state_->buccalSign, port), port));
+    if (state_->hand) state_->hand->faceEye();
 }
 
 void ViewWidget::sitAt(const input::WorkingPosition& position) {
@@ -272,6 +273,15 @@ void ViewWidget::setStop(std::optional<double> depthMm) {
     if (hand()->stopMm()) state_->lastStopMm = *hand()->stopMm();
     update();
     if (hand()->stopMm() != before) emit stopChanged(hand()->stopMm());
+}
+
+void ViewWidget::setPerPass(std::optional<double> depthMm) {
+    if (!hand()) return;
+    const std::optional<double> before = hand()->perPassMm();
+    hand()->setPerPass(depthMm);
+    if (hand()->perPassMm()) state_->lastPerPassMm = *hand()->perPassMm();
+    update();
+    if (hand()->perPassMm() != before) emit perPassChanged(hand()->perPassMm());
 }
 
 void ViewWidget::latchPedal(bool down) {

@@ -124,6 +124,8 @@ class ViewWidget : public QWidget {
 
     void setLoad(double loadN);
     void setStop(std::optional<double> depthMm);
+    /// How deep one stroke goes; none: as deep as the load takes it. Kept for the next hand.
+    void setPerPass(std::optional<double> depthMm);
     void latchPedal(bool down);
     void setBindings(const KeyBindings& bindings);
     [[nodiscard]] const KeyBindings& bindings() const;
@@ -153,6 +155,7 @@ class ViewWidget : public QWidget {
     void lookChanged();
     void loadChanged(double loadN);
     void stopChanged(std::optional<double> depthMm);
+    void perPassChanged(std::optional<double> depthMm);
     void pedalLatched(bool down);
     void pressedChanged(bool pressed);
     void measured(const handpiece::desktop::Measurement& measurement);

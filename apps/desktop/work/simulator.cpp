@@ -429,14 +429,15 @@ void Simulator::setHullMethod(bool hull) {
 }
 
 void Simulator::noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest) {
-    way_ = {hour, mirrorOnly, fingerRest, way_.depthStop};
+    way_ = {hour, mirrorOnly, fingerRest, way_.depthStop, way_.perPassMm};
     if (mode_ != Mode::liveSession || !liveSession_) return;
     liveSession_->noteWorkingWay(way_);
 }
 
-void Simulator::noteDepthStop(bool isOn) {
-    if (way_.depthStop == isOn) return;
-    way_.depthStop = isOn;
+void Simulator::noteHand(bool isStopOn, std::optional<double> perPassMm) {
+    if (way_.depthStop == isStopOn && way_.perPassMm == perPassMm) return;
+    way_.depthStop = isStopOn;
+    way_.perPassMm = perPassMm;
     noteWorkingWay(way_.hour, way_.mirrorOnly, way_.fingerRest);
 }
 

@@ -221,8 +221,8 @@ class Simulator : public QObject {
     void setHullMethod(bool hull);
     /// From where and how one works from now on, for the record: an hour or 0, by mirror only, with a finger rest.
     void noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest);
-    /// Whether the depth stop is on from now on, likewise.
-    void noteDepthStop(bool isOn);
+    /// Whether the depth stop is on from now on, and how deep one pass goes, likewise.
+    void noteHand(bool isStopOn, std::optional<double> perPassMm);
     /// The paper's penalty force instead of the proxy's.
     void setForceMode(force::LawId mode);
     /// A knock at each touch; the hum of the bur. Both off where nothing can be felt anyway: the mouse.

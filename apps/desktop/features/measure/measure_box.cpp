@@ -13,11 +13,13 @@
 #include <cmath>
 #include <utility>
 
+#include "desktop/features/measure/pass_row.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/press_words.h"
 #include "desktop/widgets/pulp_words.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/input/pointer_controller.h"
 
 namespace handpiece::desktop {
 
@@ -121,12 +123,14 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     stop_->setRange(0.1, kMaxStopMm);
     stop_->setSingleStep(0.1);
     stop_->setDecimals(1);
-    stop_->setValue(1.5);
+    stop_->setValue(input::kFirstStopMm);
     stop_->setSuffix(tr(" mm"));
-    stop_->setEnabled(false);
+    stopOn_->setChecked(true);
     stopRow->addWidget(stopOn_, 1);
     stopRow->addWidget(stop_);
     column->addLayout(stopRow);
+    passRow_ = new PassRow(this);
+    column->addWidget(passRow_);
 
     auto* sectionRow = new QHBoxLayout;
     sectionOn_ = named(new QCheckBox(tr("Section"), this), "sectionOn", tr("Cut the tooth open"),
@@ -298,6 +302,7 @@ void MeasureBox::setPermissions(const exercise::Permissions& permissions) {
 
 void MeasureBox::setLoadShown(bool shown) {
     loadRow_->setVisible(shown);
+    passRow_->setVisible(shown);
 }
 
 void MeasureBox::setDetail(Detail detail) {

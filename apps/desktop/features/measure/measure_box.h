@@ -24,6 +24,8 @@ namespace handpiece::desktop {
 class TrafficLight;
 
 /// [measureBox]. Lengths in millimetres, loads in newtons.
+class PassRow;
+
 class MeasureBox : public QWidget {
     Q_OBJECT
   public:
@@ -56,6 +58,7 @@ class MeasureBox : public QWidget {
     void setPermissions(const exercise::Permissions& permissions);
     /// A real device presses itself: no load to set.
     void setLoadShown(bool shown);
+    [[nodiscard]] PassRow* passRow() const noexcept { return passRow_; }
     void setDetail(Detail detail);
 
   signals:
@@ -76,6 +79,7 @@ class MeasureBox : public QWidget {
     QWidget* loadRow_;
     QLabel *loadCaption_, *loadValue_;
     QSlider* load_;
+    PassRow* passRow_;
     QCheckBox* stopOn_;
     QDoubleSpinBox* stop_;
     QCheckBox* sectionOn_;

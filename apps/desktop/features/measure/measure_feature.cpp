@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "desktop/features/measure/measure_box.h"
+#include "desktop/features/measure/pass_row.h"
 #include "desktop/features/measure/plot_panel.h"
 #include "desktop/features/measure/volume_bars.h"
 #include "desktop/picture/section_bar.h"
@@ -116,12 +117,17 @@ void MeasureFeature::connectTools() {
     connect(box_, &MeasureBox::loadChanged, &view_, &ViewWidget::setLoad);
     connect(&view_, &ViewWidget::stopChanged, this, [this](std::optional<double> depthMm) {
         box_->setDepthStop(depthMm.value_or(0.0));
-        simulator_.noteDepthStop(depthMm.has_value());
+        noteHand();
     });
     connect(box_, &MeasureBox::depthStopChanged, this, [this](double stopMm) {
         view_.setStop(stopMm > 0.0 ? std::optional<double>(stopMm) : std::nullopt);
-        simulator_.noteDepthStop(stopMm > 0.0);
+        noteHand();
     });
+    connect(&view_, &ViewWidget::perPassChanged, this, [this](std::optional<double> depthMm) {
+        box_->passRow()->setDepth(depthMm);
+        noteHand();
+    });
+    connect(box_->passRow(), &PassRow::changed, &view_, &ViewWidget::setPerPass);
     // The picture decides; the actions follow.
     for (const auto& [command, tool] : kTools)
         on(commands_[command], [this, t = tool](bool isOn) { view_.setTool(isOn ? t : Tool::drill); });
@@ -191,9 +197,16 @@ void MeasureFeature::showDocument() {
         // The hand that holds this tooth's bur presses and stops as the panel says.
         view_.setLoad(box_->loadN());
         view_.setStop(box_->depthStopMm());
-        simulator_.noteDepthStop(box_->depthStopMm().has_value());
+        view_.setPerPass(box_->passRow()->depthMm());
+        noteHand();
         readouts_.start();
     }
+}
+
+/// What holds the mouse's hand back; an arm has none of it.
+void MeasureFeature::noteHand() {
+    const input::PointerController* const hand = view_.hand();
+    simulator_.noteHand(hand && hand->stopMm(), hand ? hand->perPassMm() : std::nullopt);
 }
 
 void MeasureFeature::showTick() {

@@ -21,6 +21,7 @@ class MeasureFeature : public Feature {
     explicit MeasureFeature(const FeatureContext& context);
     void showDocument() override;
     void showTick() override;
+    void noteHand();
 
   private:
     void connectTools();

@@ -33,6 +33,7 @@ constexpr int kMaxPictures = 30;     // about a second: then another way out is 
 constexpr int kPatientPictures = 9;  // about 0.3 s without anything cut
 constexpr double kSameTurnRad = 1e-6;
 constexpr double kSameSight = 0.01;  // of two lines' directions: some six pixels
+constexpr double kLittleTurnRad = 0.3;  // turned by more a handpiece is taken out
 constexpr double kTouchedMm = 0.1;  // so deep in tissue a handpiece is not turned
 constexpr double kTurnedRad = 0.05;   // nearer to its orientation than that a handpiece is held as it is to be
 constexpr double kSeenFromSide = 0.8;  // cosine of the eye's way and buccolingual: one looks at a side
@@ -242,12 +243,14 @@ void PointerController::State::aim(const Vec2& pixel) {
 /// Whether the instrument has to be lifted over something on its way, and where it goes next. Lifted it is taken out of
 /// the mouth and brought in again: it meets nothing.
 void PointerController::State::travel() {
-    travelling = false;
+    const bool lifted = std::exchange(travelling, false) && regrips;
     if (!feel || noReach) return;
     const core::Pose here{place(), heldNow}, there{tipMm, orientation};
     const bool isNear = (here.positionMm - tipMm).norm() < kThereMm &&
                         core::angleBetween(heldNow, orientation) < kTurnedRad;
-    if (isNear || isWayFree(*feel, here, there)) {
+    // Once taken out it comes in where it is to be, turned as it is to be.
+    const bool turnsLittle = core::angleBetween(heldNow, orientation) < kLittleTurnRad;
+    if (isNear || (!lifted && turnsLittle && isWayFree(*feel, here, there))) {
         travelling = pressed && (here.positionMm - tipMm).norm() > kStraightMm;
         onWayMm = tipMm;
         onWay = orientation;

@@ -48,7 +48,7 @@ Pose nextOnWayOver(HandFeel& feel, const Pose& from, const Pose& to, const Vec3&
     const bool isTurned = core::angleBetween(from.orientation, to.orientation) < kSoTurnedRad;
     if (isTurned && isFree(from, to, clearOf)) return to;
     const double fromHigh = from.positionMm.dot(up), toHigh = to.positionMm.dot(up);
-    for (double over = isTurned ? 0.0 : 1.0; over <= kHighestMm; over = over == 0.0 ? 1.0 : 1.8 * over) {
+    for (double over = 0.0; over <= kHighestMm; over = over == 0.0 ? 1.0 : 1.8 * over) {
         const double level = std::max(fromHigh, toHigh) + over;
         const Pose above{from.positionMm + (level - fromHigh) * up, from.orientation};
         const Pose aboveTo{to.positionMm + (level - toHigh) * up, to.orientation};

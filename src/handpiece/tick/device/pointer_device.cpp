@@ -30,6 +30,8 @@ constexpr double kMinN = 1e-9;          // a load that has a direction
 constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
 constexpr double kMaxShare = 0.8;  // of an error, in one tick
 // What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
+constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
+constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
@@ -273,7 +275,9 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     // Left behind it comes up, as far as the surface was when the stroke began: no wall holds it there.
     const double up = wish.isLed ? 0.0 : std::clamp((beside.norm() - kBehindMm) / kUpMm, 0.0, 1.0);
     const double endMm = wish.farMm + up * (std::min(wish.passMm - kOverMm, wish.farMm) - wish.farMm);
-    const double most = settings.approachMmS * periodS, ahead = left.dot(way) + endMm, allN = pressN.norm();
+    // What meets it at that speed, spring and damper, adds no more to the load than a step may.
+    const double meets = kStepShare * wish.loadN / (k * std::min(periodS, kUsualPeriodS) + kTissueDampingNSPerMm);
+    const double most = std::min(settings.approachMmS, meets) * periodS, ahead = left.dot(way) + endMm, allN = pressN.norm();
     const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
     const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
@@ -283,7 +287,16 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     Vec3 step = (std::min(way.dot(moved), most) + in) * way +
                 (wish.isLed ? Vec3(back * over) : Vec3(across(moved) + share * (over + gain * beside + settledMm)));
     // Against the tooth no farther than the load goes, whichever way.
-    if (allN > kMinN) step -= std::max(0.0, step.dot(pressN) / allN - missing) / allN * pressN;
+    if (allN > kMinN) {
+        const Vec3 against = pressN / allN;
+        step -= std::max(0.0, step.dot(against) - missing) * against;
+        // Between two walls a step along one presses on the other: with more than the load it only gives way, or comes
+        // out.
+        const double free = std::clamp((1.0 + kOverLoad - allN / wish.loadN) / kOverLoad, 0.0, 1.0);
+        const Vec3 along = step.dot(against) * against, beyond = step - along;
+        const Vec3 out = std::min(0.0, beyond.dot(way)) * way;
+        step = along + out + free * (beyond - out);
+    }
     step = heldTo(step, std::min(settings.travelMmS * periodS,
                                 kStepShare * wish.loadN / k * std::max(1.0, periodS / kUsualPeriodS)));
     // Whatever held the bur off without being told of: the hand is near it.

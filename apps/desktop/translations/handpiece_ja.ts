@@ -1135,6 +1135,10 @@
         <source>Go to the bur</source>
         <translation>バーへ移動</translation>
     </message>
+    <message>
+        <source>Depth of one pass</source>
+        <translation>1回の切削の深さ</translation>
+    </message>
 </context>
 <context>
     <name>Measuring</name>
@@ -1617,6 +1621,10 @@
     <message>
         <source>Depth stop</source>
         <translation>深さ制限</translation>
+    </message>
+    <message>
+        <source>Pass</source>
+        <translation>1回の深さ</translation>
     </message>
 </context>
 <context>
@@ -7627,6 +7635,18 @@ lingual: %4</source>
         <source>Drag a landmark over the tooth, or move the one chosen with the arrow keys</source>
         <translation>指標点を歯の上でドラッグするか、選んだものを矢印キーで動かします</translation>
     </message>
+    <message>
+        <source>As deep as one pass goes: let go and press again to go deeper</source>
+        <translation>1回の深さに達しました。さらに深く削るには、放してもう一度押してください</translation>
+    </message>
+    <message>
+        <source>Off what this stroke began on: let go, and press here to work here</source>
+        <translation>この切削を始めた場所から外れています。ここを削るには、放してから押してください</translation>
+    </message>
+    <message>
+        <source>The handpiece cannot get there: turn the view, tilt it or take another bur</source>
+        <translation>ハンドピースが届きません。視点を回すか、傾けるか、別のバーを使ってください</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::VolumeBars</name>
@@ -11159,6 +11179,29 @@ lingual: %4</source>
     <message>
         <source>At %1. The school has your work; below stands its receipt. A teacher decides about the result.</source>
         <translation>%1 提出。学校に届きました。下が学校の受領証です。結果は教員が判定します。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::PassRow</name>
+    <message>
+        <source>One pass goes</source>
+        <translation>1回の切削の深さ</translation>
+    </message>
+    <message>
+        <source>Depth of one pass</source>
+        <translation>1回の切削の深さ</translation>
+    </message>
+    <message>
+        <source>How deep one stroke cuts: press again to go deeper (Ctrl, Shift and the wheel)</source>
+        <translation>1回の切削で削る深さ。もう一度押すとさらに深くなります（Ctrl＋Shift＋ホイール）</translation>
+    </message>
+    <message>
+        <source>Depth of one pass in millimetres</source>
+        <translation>1回の切削の深さ（ミリメートル）</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
     </message>
 </context>
 </TS>

@@ -81,9 +81,10 @@ void Leading::findEnd(LineOfSight& s, const DepthLimits& limits) const {
     s.end = limits.stopMm ? LineOfSight::End::atStop : LineOfSight::End::through;
     s.endAt = *s.touchAt + end;
     s.passAt = *s.touchAt;
-    if (!limits.perPassMm || s.what != 0) return;
+    if (!limits.perPassMm) return;
     double at = *s.touchAt;
-    for (int i = 0; i < kMaxLooks && at < *s.touchAt + kReachMm; ++i) {
+    // Of another tooth, and of gingiva, only the uncut surface is known.
+    for (int i = 0; s.what == 0 && i < kMaxLooks && at < *s.touchAt + kReachMm; ++i) {
         const double left = feel_.inStrokeMm(poseAt(s.at(at)));
         if (left < kInStrokeMm) break;
         at += left;

@@ -9,6 +9,7 @@
 namespace handpiece::desktop {
 namespace {
 
+constexpr int kWatchMs = 33;
 constexpr int kUnderWriting = 46;  // pixels: the row in which the hand's state is written
 // A point of the surface lies within the first of what is met along its line of sight; two in one place.
 constexpr double kHiddenMm = 0.2, kSamePlaceMm = 0.05;
@@ -52,6 +53,12 @@ ViewWidget::State::State(ViewWidget* of) : widget(of) {
         });
     };
     probe = std::make_unique<ProbeThread>(std::move(measuring));
+    watch.setInterval(kWatchMs);
+    QObject::connect(&watch, &QTimer::timeout, of, [this] {
+        if (hand && (hand->isPressed() || hand->isOnItsWay()) && followed.hasExpired(kWatchMs)) followHand();
+    });
+    followed.start();
+    watch.start();
     render = std::make_unique<RenderThread>(std::move(drawing));
 }
 
@@ -208,7 +215,13 @@ void ViewWidget::State::feelMouth() {
 }
 
 void ViewWidget::State::followHand() {
-    if (hand) hand->follow(render->sample());
+    followSample(render->sample());
+}
+
+void ViewWidget::State::followSample(const messages::HapticSample& sample) {
+    if (!hand) return;
+    hand->follow(sample);
+    followed.restart();
 }
 
 void ViewWidget::State::takeFrame() {
@@ -216,7 +229,7 @@ void ViewWidget::State::takeFrame() {
     std::optional<Frame> next = render->takeFrame();
     if (!next) return;
     frame = std::move(next);
-    if (hand) hand->follow(frame->sample);
+    followSample(frame->sample);
     widget->update();
     emit widget->frameDrawn(frame->report);
 }

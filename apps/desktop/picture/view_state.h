@@ -5,6 +5,7 @@
 
 #include <QElapsedTimer>
 #include <QPointer>
+#include <QTimer>
 #include <atomic>
 
 #include "desktop/picture/help_card.h"
@@ -76,6 +77,8 @@ struct ViewWidget::State {
     SectionBar* sectionBar = nullptr;
     StripStack* strips = nullptr;
     std::atomic<bool> framePosted{false};
+    QTimer watch;  // a hand on its way goes on where no picture is drawn, since nothing seen has changed
+    QElapsedTimer followed;
 
     // Last: their threads call back into what stands above.
     std::unique_ptr<ProbeThread> probe;
@@ -103,6 +106,7 @@ struct ViewWidget::State {
     void eyeMoved();    // and the hand, and listeners
     void hoverAgain();  // under the pointer that stood still while the eye moved
     void followHand();
+    void followSample(const messages::HapticSample& sample);
     void feelMouth();  // the hand, of this tooth, bur and what stands around
     void takeFrame();
     void layOut();

@@ -59,6 +59,7 @@ struct MouthWay {
     view::StandardView eye = view::StandardView::occlusal;
     std::function<core::Vec2(double)> at;
     double pressS = 0.4, releaseS = 1.4, endS = 1.8;
+    double againS = 1e9;  ///< pressed once more from then on, to the end
     double loadN = 1.0;
     DepthLimits limits{kFirstStopMm, kFirstPerPassMm};
     bool isLeftHanded = false;
@@ -136,7 +137,12 @@ class MouthCourse {
                     hand->press(to, true);
                     pressed = true;
                 }
-                if (pressed && t >= way_.releaseS) {
+                if (!pressed && t >= way_.againS) {
+                    began_.reset();
+                    hand->press(to, true);
+                    pressed = true;
+                }
+                if (pressed && t >= way_.releaseS && (t < way_.againS || t + 0.01 >= way_.endS)) {
                     finish(to, f);
                     hand->release();
                     pressed = false;

@@ -40,6 +40,25 @@ void print(const MouthWay& way, const MouthFigures& f) {
     std::fflush(stdout);
 }
 
+// A groove on the buccal side, then a press at the neck, by the gingiva.
+TEST(MouthCourse, fromAGrooveToTheNeck) {
+    MouthWay way;
+    way.name = "46/neck";
+    way.eye = view::StandardView::buccal;
+    way.at = [](double t) {
+        const double s = std::clamp((t - 0.6) / 1.0, 0.0, 1.0);
+        return t < 2.2 ? Vec2(420 + 60 * s, 330) : Vec2(470, 560);
+    };
+    way.releaseS = 2.0;
+    way.againS = 2.7;
+    way.endS = 5.0;
+    MouthCourse course(mouthAt(46), way);
+    const MouthFigures f = course.play();
+    print(way, f);
+    EXPECT_LT(f.notNearestMm, 0.15);
+    EXPECT_EQ(f.tooHard, 0);
+}
+
 TEST(MouthCourse, pressesAndDragsAtRandom) {
     const char* asked = std::getenv("HANDPIECE_POINTER_SWEEP");
     const int many = asked ? std::max(1, std::atoi(asked)) : 6;

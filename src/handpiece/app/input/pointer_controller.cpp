@@ -647,6 +647,9 @@ bool PointerController::isPressed() const noexcept {
 bool PointerController::pedalLatched() const noexcept {
     return state_->latched;
 }
+bool PointerController::isOnItsWay() const noexcept {
+    return state_->lifting || state_->travelling;
+}
 bool PointerController::isAway() const noexcept {
     return state_->away;
 }

@@ -117,6 +117,8 @@ class PointerController {
     [[nodiscard]] bool pedalLatched() const noexcept;
     [[nodiscard]] std::optional<core::Vec3> rest() const noexcept;
     [[nodiscard]] bool isAway() const noexcept;
+    /// Out of a cavity, or over something: follow() leads it on.
+    [[nodiscard]] bool isOnItsWay() const noexcept;
     [[nodiscard]] const device::PointerTarget& target() const noexcept;
 
   private:

@@ -5,9 +5,7 @@
 /// threads: where the bur was, what the hand bore on, what was cut that nobody had drawn.
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -17,14 +15,11 @@
 #include <vector>
 
 #include "handpiece/app/course/kept_cases.h"
-#include "handpiece/app/input/holding.h"
 #include "handpiece/app/input/line_of_sight.h"
-#include "handpiece/app/input/way_over.h"
 #include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/app/simulation/mouth_feel.h"
 #include "handpiece/app/simulation/simulation_setup.h"
-#include "handpiece/base/core/rotation.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/device/passing_device.h"
 #include "handpiece/tick/force/proxy.h"
@@ -35,17 +30,12 @@ namespace handpiece::input {
 struct Mouth {
     /// Kept in `folder`, with its fields: made there when it is not yet.
     Mouth(int fdi, const std::filesystem::path& folder) : number(fdi) {
-        const auto t0 = std::chrono::steady_clock::now();
-        const auto lap = [&](const char* w) { std::printf("  %s %.1f s\n", w, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count()); std::fflush(stdout); };
         whole = course::keptMouth(fdi, {}, folder);
-        lap("made");
         simulation::SimulationSettings settings;
         settings.field = simulation::fieldSettingsAt(0.1);
         settings.bur = instrument::makeInstrument("330").bur;
         station = simulation::makeSimulation(whole, settings, true);
-        lap("station");
         live = std::make_shared<simulation::LiveTooth>(station, tooth::StateDelta{});
-        lap("live");
     }
     int number;
     cases::Case whole;
@@ -74,7 +64,7 @@ struct MouthFigures {
     double removedMm3 = 0.0, outsideMm3 = 0.0;  ///< of the tooth worked on; what lies outside of what was drawn
     double othersMm3 = 0.0;                     ///< of other teeth
     double pathMm = 0.0, drawnMm = 0.0;         ///< of the hand while pressed; of the places under the pointer
-    std::vector<core::Vec3> floorMm;            ///< tips while it cut
+    std::vector<core::Pose> floor;              ///< where it cut
 };
 
 class MouthCourse {
@@ -158,23 +148,18 @@ class MouthCourse {
             f.mostAwayMm = std::max(f.mostAwayMm, (hand_ - tip).norm());
             if (pressed && i > 0) f.pathMm += (hand_ - before).norm();
             before = hand_;
-            if ((last.flags & messages::kCutting) != 0) f.floorMm.push_back(tip);
-            if (std::getenv("HANDPIECE_TRACE") && (device_->bearingN > 1.1 * way_.loadN || i % 100 == 0)) {
-                const auto& tg = hand->target();
-                std::printf("   t %.3f N %.2f hand %.2f %.2f %.2f tip %.2f %.2f %.2f away %.2f target %.2f %.2f %.2f load %.2f ped %.0f turn-left %.3f idle %d flags %x\n", t, device_->bearingN,
-                    hand_.x(), hand_.y(), hand_.z(), tip.x(), tip.y(), tip.z(), (hand_ - tip).norm(), tg.positionMm[0], tg.positionMm[1], tg.positionMm[2], tg.loadN, tg.pedal,
-                    core::angleBetween(core::Quat(tg.orientation[0], tg.orientation[1], tg.orientation[2], tg.orientation[3]), proxy().orientation), int(hand->idle()), last.flags);
-            }
+            if ((last.flags & messages::kCutting) != 0) f.floor.push_back(proxy());
             if (look) look(t, last);
         }
         mouth_.live->refresh();
         for (const double v : last.removedMm3)
             f.removedMm3 += v;
         f.othersMm3 = last.removedOthersMm3;
-        f.outsideMm3 = outsideMm3(f.floorMm);
+        f.outsideMm3 = outsideMm3(f.floor);
         return f;
     }
 
+    [[nodiscard]] core::Quat tilt() const { return proxy().orientation; }
     std::function<void(double, const messages::HapticSample&)> look;
     view::Viewport viewport{900, 700};
     view::Camera camera;
@@ -225,31 +210,6 @@ class MouthCourse {
 
     void finish(const core::Vec2& pixel, MouthFigures& f) {
         f.said = hand->idle();
-        if (std::getenv("HANDPIECE_TRACE")) {
-            const view::Ray r = view::rayThrough(camera, viewport, pixel);
-            const core::Vec3 towards = -camera.forward();
-            const core::Quat own0 = core::Quat(hand->target().orientation[0], hand->target().orientation[1], hand->target().orientation[2], hand->target().orientation[3]);
-            const core::Quat own = std::abs(towards.y()) > 0.8 ? core::Quat(core::rotationBetween(own0 * core::Vec3::UnitZ(), towards) * own0) : own0;
-            int calls = 0;
-            const auto c0 = std::chrono::steady_clock::now();
-            const auto q = holdAt(*feel, r, {own, own, false, kHoverMm, 300.0});
-            const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - c0).count();
-            const LineOfSight s = Leading(*feel, q.value_or(own)).alongRay(r, kHoverMm, 300.0);
-            std::printf("   hold: %d in %.1f ms; meets %d what %d tooth %d", int(q.has_value()), ms, int(s.touchAt.has_value()), s.what, s.isTooth);
-            if (s.touchAt) {
-                const core::Vec3 at = s.at(*s.touchAt);
-                std::printf(" at %.1f %.1f %.1f axis %.2f %.2f %.2f body %.2f side %.2f", at.x(), at.y(), at.z(), (q.value_or(own) * core::Vec3::UnitZ()).x(), (q.value_or(own) * core::Vec3::UnitZ()).y(), (q.value_or(own) * core::Vec3::UnitZ()).z(), feel->ofBodyMm({at, q.value_or(own)}), feel->ofSideMm({at, q.value_or(own)}));
-                const core::Pose here = proxy(), to{s.at(*s.hoverAt), q.value_or(own)};
-                const bool next = isWayFree(*feel, here, to);
-                std::printf(" way %d; here %.1f %.1f %.1f axis %.2f %.2f %.2f bur %.2f body %.2f", int(next), here.positionMm.x(), here.positionMm.y(), here.positionMm.z(), here.orientation.toRotationMatrix()(0, 2), here.orientation.toRotationMatrix()(1, 2), here.orientation.toRotationMatrix()(2, 2), feel->ofBur(here).mm, feel->ofBodyMm(here));
-            }
-            const auto b0 = std::chrono::steady_clock::now();
-            for (int i = 0; i < 200; ++i) { core::Pose p = proxy(); p.positionMm.x() += 1e-3 * i; calls += feel->ofBodyMm(p) > 1; }
-            const auto b1 = std::chrono::steady_clock::now();
-            for (int i = 0; i < 200; ++i) { core::Pose p = proxy(); p.positionMm.x() += 1e-3 * i; calls += feel->ofBur(p).mm > 1; }
-            const auto b2 = std::chrono::steady_clock::now();
-            std::printf("\n   body %.1f us, bur %.1f us %d\n", std::chrono::duration<double, std::micro>(b1 - b0).count() / 200, std::chrono::duration<double, std::micro>(b2 - b1).count() / 200, calls);
-        }
         const view::Ray ray = view::rayThrough(camera, viewport, pixel);
         core::Pose here = proxy();
         const core::Vec3 d = here.positionMm - ray.originMm;
@@ -268,14 +228,14 @@ class MouthCourse {
     }
 
     /// Of what has gone: farther than 0.2 mm from every place that was drawn.
-    [[nodiscard]] double outsideMm3(const std::vector<core::Vec3>& tips) const {
+    [[nodiscard]] double outsideMm3(const std::vector<core::Pose>& tips) const {
         constexpr double kGrownMm = 0.2, h = 0.1;
         const instrument::Bur& bur = *mouth_.station.settings.bur;
         const tooth::ToothModel& model = *mouth_.station.tooth;
         double sum = 0.0;
         core::Box cut;
-        for (const core::Vec3& tip : tips)
-            cut.extend(tip);
+        for (const core::Pose& tip : tips)
+            cut.extend(tip.positionMm);
         if (cut.isEmpty()) return 0.0;
         cut = cut.grown(bur.lengthMm() + bur.maxRadiusMm());
         const auto isDrawn = [&](const core::Vec3& p) {

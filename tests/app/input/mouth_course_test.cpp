@@ -6,7 +6,6 @@
 
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <map>
 
 #include "support/random.h"
@@ -59,6 +58,38 @@ TEST(MouthCourse, fromAGrooveToTheNeck) {
     EXPECT_EQ(f.tooHard, 0);
 }
 
+// Along the central fissure, as the mouse's hand begins: one groove of one depth, whatever the speed.
+TEST(MouthCourse, alongAFissureTheDepthIsEven) {
+    for (const double pxPerS : {15.0, 40.0, 150.0}) {
+        MouthWay way;
+        way.name = "46/fissure " + std::to_string(static_cast<int>(pxPerS)) + " px/s";
+        const Vec2 from(390, 350), to(500, 350);
+        const double lastsS = (to - from).norm() / pxPerS;
+        way.at = [=](double t) { return Vec2(from + std::clamp((t - 0.45) / lastsS, 0.0, 1.0) * (to - from)); };
+        way.releaseS = 0.45 + lastsS + 0.05;
+        way.endS = way.releaseS + 0.4;
+        MouthCourse course(mouthAt(46), way);
+        const MouthFigures f = course.play();
+        // The deepest at each tenth of a millimetre along the fissure, along the bur, below the uncut tooth.
+        std::map<int, double> deepest;
+        for (const core::Pose& at : f.floor) {
+            double& deep = deepest[static_cast<int>(std::lround(10.0 * at.positionMm.x()))];
+            const Leading leading(*course.feel, at.orientation);
+            deep = std::max(deep, leading.wayOutMm(at.positionMm, leading.axis(), 0.0));
+        }
+        ASSERT_GT(deepest.size(), 10u);
+        std::vector<double> depths;
+        for (const auto& [place, deep] : deepest)
+            if (place > deepest.begin()->first + 1 && place < deepest.rbegin()->first - 1) depths.push_back(deep);
+        const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+        std::printf("  %s: %.3f to %.3f mm deep, %.3f mm3, bore %.2f N\n", way.name.c_str(), *least, *most,
+                    f.removedMm3, f.mostN);
+        EXPECT_LT(*most - *least, 0.15) << pxPerS;
+        EXPECT_LT(*most, kFirstPerPassMm + 0.05);
+        EXPECT_LT(f.outsideMm3, 0.001);
+    }
+}
+
 TEST(MouthCourse, pressesAndDragsAtRandom) {
     const char* asked = std::getenv("HANDPIECE_POINTER_SWEEP");
     const int many = asked ? std::max(1, std::atoi(asked)) : 6;
@@ -87,11 +118,8 @@ TEST(MouthCourse, pressesAndDragsAtRandom) {
             way.at = [=](double t) {
                 return Vec2(from + std::clamp((t - 0.65) / std::max(lastsS, 1e-6), 0.0, 1.0) * (to - from));
             };
-            const auto t0 = std::chrono::steady_clock::now(); const auto c0 = std::clock();
             MouthCourse course(mouth, way);
-            const double made = std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count();
             const MouthFigures f = course.play();
-            std::printf("    made %.2f s, all %.2f s, cpu %.2f s for %.2f s\n", made, std::chrono::duration<double>(std::chrono::steady_clock::now() - t0).count(), double(std::clock() - c0) / CLOCKS_PER_SEC, way.endS);
             const bool isNear = f.notNearestMm < 0.15, isTold = !isNear && f.said != Idle::no;
             ++all;
             near += isNear;

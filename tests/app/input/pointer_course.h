@@ -105,7 +105,8 @@ class PointerCourse {
                     pressed = false;
                 }
                 const device::PointerTarget& target = hand->target();
-                if (const auto seen = view::pixelOf(camera, viewport, core::Vec3(target.positionMm)); seen && pressed && hand->idle() != PointerController::Idle::onItsWay)
+                if (const auto seen = view::pixelOf(camera, viewport, core::Vec3(target.positionMm));
+                    seen && pressed && hand->idle() != PointerController::Idle::onItsWay)
                     figures.targetOffPx = std::max(figures.targetOffPx, (*seen - at).norm());
             }
             if (t >= nextPicture) {

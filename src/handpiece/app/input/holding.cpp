@@ -19,7 +19,7 @@ using core::Vec3;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kRollCosts = 0.4;  // of a tilt by as much: where the handle points matters less than the bur
 constexpr double kHomeMm = 0.3;     // so much clearer than asked the student's own tilt is taken up again
-constexpr int kMostLooks = 24;     // exact ones, for one place
+constexpr int kMostLooks = 24;      // exact ones, for one place
 constexpr double kRoughMm = 0.6;    // what is missing by more at the place of another orientation is not looked at
 
 /// A turn of the student's own orientation: a tilt of the bur's axis, then one about it.

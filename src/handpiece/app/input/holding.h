@@ -17,9 +17,9 @@ inline constexpr double kBodyClearMm = 0.3, kSideClearMm = 0.3, kKeptShare = 0.4
 
 /// What is asked of an orientation.
 struct HoldingRequest {
-    core::Quat own;       ///< the student's tilt
-    core::Quat held;      ///< as it is held now: kept while it does
-    bool isOwn = false;   ///< the student has tilted it: the bur may work with its side
+    core::Quat own;      ///< the student's tilt
+    core::Quat held;     ///< as it is held now: kept while it does
+    bool isOwn = false;  ///< the student has tilted it: the bur may work with its side
     double hoverMm = 0.0, farMm = 0.0;
 };
 

@@ -53,8 +53,7 @@ class Leading {
     [[nodiscard]] double wayOutMm(const core::Vec3& tipMm, const core::Vec3& direction, double offMm) const;
 
   private:
-    [[nodiscard]] std::optional<double> meet(const LineOfSight& sight, double fromMm, double offMm,
-                                             double farMm) const;
+    [[nodiscard]] std::optional<double> meet(const LineOfSight& sight, double fromMm, double offMm, double farMm) const;
     [[nodiscard]] double stopEndMm(const LineOfSight& sight, double stopMm) const;
     [[nodiscard]] double deepestMm(const LineOfSight& sight) const;
 

@@ -32,11 +32,11 @@ constexpr double kStraightMm = 3.0;  // from so far away, at most, a press goes 
 constexpr int kMaxPictures = 30;     // about a second: then another way out is tried
 constexpr int kPatientPictures = 9;  // about 0.3 s without anything cut
 constexpr double kSameTurnRad = 1e-6;
-constexpr double kSameSight = 0.01;  // of two lines' directions: some six pixels
+constexpr double kSameSight = 0.01;     // of two lines' directions: some six pixels
 constexpr double kLittleTurnRad = 0.3;  // turned by more a handpiece is taken out
-constexpr double kTouchedMm = 0.1;  // so deep in tissue a handpiece is not turned
-constexpr double kTurnedRad = 0.05;   // nearer to its orientation than that a handpiece is held as it is to be
-constexpr double kSeenFromSide = 0.8;  // cosine of the eye's way and buccolingual: one looks at a side
+constexpr double kTouchedMm = 0.1;      // so deep in tissue a handpiece is not turned
+constexpr double kTurnedRad = 0.05;     // nearer to its orientation than that a handpiece is held as it is to be
+constexpr double kSeenFromSide = 0.8;   // cosine of the eye's way and buccolingual: one looks at a side
 
 Quat normalised(const Quat& q) {
     return q.norm() > 1e-9 ? q.normalized() : Quat::Identity();
@@ -68,13 +68,13 @@ struct PointerController::State {
     view::Viewport viewport;
     device::PointerTarget target;
 
-    Vec3 tipMm = Vec3::Zero();        // wanted, of a bur that does not press
-    Quat own = Quat::Identity();      // the student's tilt
-    bool isOwn = false;               // and whether they have tilted it
-    Quat orientation = own;           // as it is to be held, where it is going
-    Quat onWay = own;                 // as it is held on the way there
-    std::optional<Vec3> proxyMm;      // as last told
-    Vec3 sentMm = Vec3::Zero();       // as long as nothing was told: where the hand was sent
+    Vec3 tipMm = Vec3::Zero();    // wanted, of a bur that does not press
+    Quat own = Quat::Identity();  // the student's tilt
+    bool isOwn = false;           // and whether they have tilted it
+    Quat orientation = own;       // as it is to be held, where it is going
+    Quat onWay = own;             // as it is held on the way there
+    std::optional<Vec3> proxyMm;  // as last told
+    Vec3 sentMm = Vec3::Zero();   // as long as nothing was told: where the hand was sent
     bool touching = false;
 
     double loadN = kFirstLoadN;
@@ -246,8 +246,8 @@ void PointerController::State::travel() {
     const bool lifted = std::exchange(travelling, false) && regrips;
     if (!feel || noReach) return;
     const core::Pose here{place(), heldNow}, there{tipMm, orientation};
-    const bool isNear = (here.positionMm - tipMm).norm() < kThereMm &&
-                        core::angleBetween(heldNow, orientation) < kTurnedRad;
+    const bool isNear =
+        (here.positionMm - tipMm).norm() < kThereMm && core::angleBetween(heldNow, orientation) < kTurnedRad;
     // Once taken out it comes in where it is to be, turned as it is to be.
     const bool turnsLittle = core::angleBetween(heldNow, orientation) < kLittleTurnRad;
     if (isNear || (!lifted && turnsLittle && isWayFree(*feel, here, there))) {

@@ -33,8 +33,8 @@ namespace handpiece::input {
 
 inline constexpr double kHoverMm = 0.5, kMinLoadN = 0.1, kMaxLoadN = 3.0, kFirstLoadN = 1.0;
 inline constexpr double kNudgeMm = 0.1, kFineNudgeMm = 0.02, kSlowFactor = 0.2, kStopStepMm = 0.1;
-/// A stroke's depth, and the stop, that a mouse's hand begins with [judgements]: three passes to the stop.
-inline constexpr double kFirstPerPassMm = 0.5, kFirstStopMm = 1.5, kMinPerPassMm = 0.1, kMaxPerPassMm = 3.0;
+/// A stroke's depth, and the stop, that a mouse's hand begins with [judgements]: five passes to the stop.
+inline constexpr double kFirstPerPassMm = 0.3, kFirstStopMm = 1.5, kMinPerPassMm = 0.1, kMaxPerPassMm = 3.0;
 inline constexpr double kRestFactor = 0.5;  ///< of the pointer's way, with a finger rest [a judgement]
 
 /// Where a hand begins: the bur along the tooth's long axis some millimetres above its box, the handle out of the
@@ -97,16 +97,16 @@ class PointerController {
 
     /// Why a bur that is pressed does not cut.
     enum class Idle {
-        no,        ///< it cuts, or is about to, or is not pressed
-        offTooth,  ///< no tooth on the pointer's line of sight
-        atStop,    ///< as deep as the depth stop allows
-        passDone,  ///< as deep as one stroke goes
-        offStroke, ///< on another tooth, or on gingiva, than that on which the stroke began
-        noReach,   ///< head, shank or handle would touch teeth or gingiva, however the handpiece is held
-        through,   ///< no deeper here: beyond it comes out of the tooth
-        onItsWay,  ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
-        stalled,   ///< the drive stands
-        held,      ///< nothing gives way: what it touches cannot be cut with this bur, or the load is too small
+        no,         ///< it cuts, or is about to, or is not pressed
+        offTooth,   ///< no tooth on the pointer's line of sight
+        atStop,     ///< as deep as the depth stop allows
+        passDone,   ///< as deep as one stroke goes
+        offStroke,  ///< on another tooth, or on gingiva, than that on which the stroke began
+        noReach,    ///< head, shank or handle would touch teeth or gingiva, however the handpiece is held
+        through,    ///< no deeper here: beyond it comes out of the tooth
+        onItsWay,   ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
+        stalled,    ///< the drive stands
+        held,       ///< nothing gives way: what it touches cannot be cut with this bur, or the load is too small
     };
     [[nodiscard]] Idle idle() const noexcept;
     [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down

@@ -30,8 +30,10 @@ constexpr double kMinN = 1e-9;          // a load that has a direction
 constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
 constexpr double kMaxShare = 0.8;  // of an error, in one tick
 // What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
+// The load falls to none on the last of the way, some hundredths of a millimetre, or a stroke would end far above it.
+constexpr double kEndStiffer = 4.0;
 constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
-constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
+constexpr double kOverLoad = 0.05;               // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
@@ -263,7 +265,7 @@ void PointerDevice::State::move(double h) noexcept {
 void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexcept {
     // Shares of what is left, so that no period is too long: of the way to a place, of a force that is missing.
     const double k = capability.maxStiffnessNPerMm, b = settings.dampingNSPerMm;
-    const double back = 1.0 - core::exp(-periodS * settings.stiffnessNPerMm / b);
+    const double back = 1.0 - core::exp(-periodS * kEndStiffer * settings.stiffnessNPerMm / b);
     const double mmPerN = (1.0 - core::exp(-periodS * k / b)) / k;
     const Vec3& way = wish.way;
     const auto across = [&](const Vec3& v) { return Vec3(v - way * way.dot(v)); };
@@ -277,7 +279,8 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const double endMm = wish.farMm + up * (std::min(wish.passMm - kOverMm, wish.farMm) - wish.farMm);
     // What meets it at that speed, spring and damper, adds no more to the load than a step may.
     const double meets = kStepShare * wish.loadN / (k * std::min(periodS, kUsualPeriodS) + kTissueDampingNSPerMm);
-    const double most = std::min(settings.approachMmS, meets) * periodS, ahead = left.dot(way) + endMm, allN = pressN.norm();
+    const double most = std::min(settings.approachMmS, meets) * periodS, ahead = left.dot(way) + endMm,
+                 allN = pressN.norm();
     const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
     const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
@@ -298,7 +301,7 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
         step = along + out + free * (beyond - out);
     }
     step = heldTo(step, std::min(settings.travelMmS * periodS,
-                                kStepShare * wish.loadN / k * std::max(1.0, periodS / kUsualPeriodS)));
+                                 kStepShare * wish.loadN / k * std::max(1.0, periodS / kUsualPeriodS)));
     // Whatever held the bur off without being told of: the hand is near it.
     step = tipMm + heldTo(positionMm + step - tipMm, settings.farthestMm) - positionMm;
     positionMm += step;

@@ -25,12 +25,12 @@ struct PointerTarget {
     /// Along it: where the surface lay when the stroke began. A tip that is left behind by the pointer comes up to
     /// there, so that a quick stroke is a shallow one. From `farMm` on: it stays as deep as it is.
     double passMm = 1e4;
-    double loadN = 0.0;   ///< with which the bur presses on the tooth, along the way as far as that goes; 0: not at all
-    double mostN = 0.0;   ///< of a hand without a load, on whatever it meets; 0: PointerHandSettings::mostPullN
-    bool isLed = false;   ///< across the way it gives way to the tooth: out of a cavity, not through its wall
+    double loadN = 0.0;  ///< with which the bur presses on the tooth, along the way as far as that goes; 0: not at all
+    double mostN = 0.0;  ///< of a hand without a load, on whatever it meets; 0: PointerHandSettings::mostPullN
+    bool isLed = false;  ///< across the way it gives way to the tooth: out of a cavity, not through its wall
     bool regrips = false;  ///< on its way it meets nothing: Reading::buttons says kRegripsButton
-    bool frozen = false;  ///< the hand stands where it is (the view is being turned)
-    bool away = false;    ///< Escape, lost focus: pedal up, the bur is lifted along its axis
+    bool frozen = false;   ///< the hand stands where it is (the view is being turned)
+    bool away = false;     ///< Escape, lost focus: pedal up, the bur is lifted along its axis
 };
 using PointerMailbox = rt::TripleBuffer<PointerTarget>;
 
@@ -46,7 +46,7 @@ using PointerMailbox = rt::TripleBuffer<PointerTarget>;
 /// sideways at a wall, it does not press with. Nor is it ever farther than `farthestMm` from where the bur rests.
 struct PointerHandSettings {
     double massKg = 0.05;
-    double stiffnessNPerMm = 4.0;   ///< of the spring; and how fast the load falls to none where the way ends
+    double stiffnessNPerMm = 4.0;   ///< of the spring; a quarter of how fast the load falls to none where the way ends
     double dampingNSPerMm = 0.028;  ///< critical for that
     double mostPullN = 2.0;         ///< of that spring: a hand that does not press pulls no harder
     double followS = 0.012;         ///< behind a pointer that moves evenly

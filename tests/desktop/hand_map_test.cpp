@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What scripts are told of eye, hand and tooth is what the window has.
+#include <fmt/format.h>
+
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>

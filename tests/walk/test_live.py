@@ -142,7 +142,8 @@ class Translated(unittest.TestCase):
         self.assertEqual(words.foreign("Undo the last stroke", self.NAMES), ["Undo", "the", "last", "stroke"])
 
     def test_paths_and_markup_are_no_words(self):
-        self.assertEqual(words.foreign("<span style='color:red'>0.3</span>&nbsp;/tmp/molar/cut.h5 molar.handpiece", self.NAMES), [])
+        self.assertEqual(words.foreign("<span style='color:red'>0.3</span>&nbsp;/tmp/molar/cut.h5 molar.handpiece "
+                                       "<code>handpiece scan case</code>", self.NAMES), [])
 
     def test_each_text_once(self):
         invariant = words.Translated(self.NAMES)

@@ -6,7 +6,7 @@ import tempfile
 import unittest
 
 from support import ROOT, hand
-from walking import errands, glance, people, shrink, spots, way
+from walking import errands, glance, people, player, shrink, spots, way
 from walking.finds import Find, KnownList
 
 
@@ -130,6 +130,13 @@ class Places(unittest.TestCase):
     def test_a_path_has_its_ends(self):
         path = spots.path(hand(), [["view", 0.25, 0.5], ["view", 0.75, 0.5]])
         self.assertEqual((path[0], path[-1]), ((200, 300), (600, 300)))
+
+
+class Fields(unittest.TestCase):
+    def test_numbers_as_they_are_written(self):
+        for text, number in (("1.7 mm", 1.7), ("1,7 mm", 1.7), ("-2.3 mm", -2.3), ("\u22122.3 mm", -2.3), ("400,000 rpm", 400000.0),
+                             ("400\u202f000 rpm", 400000.0), ("off", None)):
+            self.assertEqual(player.number_of(text), number)
 
 
 class Glance(unittest.TestCase):

@@ -75,7 +75,7 @@ class Errands(Player):
         self.watch.pause()
         self.desk.crash()
         self.restart()
-        cut = was.get("unsaved") and was.get("removedMm3", 0.0) + was.get("removedOthersMm3", 0.0) > 0.0
+        cut = "stateHash" in was and was.get("unsaved") and was.get("removedMm3", 0.0) + was.get("removedOthersMm3", 0.0) > 0.0
         if not cut:
             return
         if not self.wait(lambda: "noticeRemedy" in self.desk.widgets() and self.hand().get("notice") == "crashed", 20.0):

@@ -8,7 +8,7 @@ DIALOGS = ["ctrl+t", "ctrl+shift+k", "F1", "ctrl+i", "ctrl+shift+r", "ctrl+shift
            "F8", "shift+F1", "ctrl+shift+n", "ctrl+n", "ctrl+shift+t"]
 MENUS = ["menuFile", "menuEdit", "menuView", "menuTools", "menuSound", "menuHelp", "viewsButton"]
 # Fields and what they hold.
-FIELDS = [("depthStop", 0.1, 5.0, 1), ("sectionOffset", -3.0, 3.0, 1), ("springSpin", 0.2, 2.5, 2), ("speedSpin", 50, 300, 0)]
+FIELDS = [("depthStop", 0.1, 5.0, 1), ("sectionOffset", -3.0, 3.0, 1), ("springSpin", 0.2, 2.5, 1), ("speedSpin", 300000, 390000, 0)]
 SIZES = [(1366, 768), (1280, 720), (1100, 700), (1366, 700)]
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Does the steps of a way in the real window. What a step finds not there it leaves out, so that a way goes on to mean
 something when steps before it were taken away."""
-import pathlib
+import re
 import subprocess
 import time
 
@@ -11,6 +11,13 @@ from .live import Doing
 
 RESTS_S, OPENS_S = 20.0, 600.0
 STANDARD_EYE = {"1", "2", "3", "4", "5", "6", "Home"}
+
+
+def number_of(text):
+    """What a field says, whatever it writes between thousands; None without a number."""
+    plain = re.sub(r"(?<=\d)[,\u202f\u00a0 ](?=\d{3})", "", text).replace("\u2212", "-")
+    found = re.search(r"-?\d+(?:[.,]\d+)?", plain)
+    return float(found[0].replace(",", ".")) if found else None
 
 
 class Player:
@@ -29,6 +36,10 @@ class Player:
 
     def windows(self):
         return self.watch.latest().get("windows", [])
+
+    def others(self):
+        """Windows but the main one and what only tells."""
+        return [name for name in self.windows() if name not in ("mainWindow", "qtooltip_label")]
 
     def wait(self, happens, seconds):
         end = time.monotonic() + seconds
@@ -100,7 +111,7 @@ class Player:
 
     def look(self):
         """That something is drawn where the tooth is to be."""
-        if not self.is_open() or self.windows() != ["mainWindow"]:
+        if not self.is_open() or self.others():
             return
         width, height = self.hand()["viewport"]
 
@@ -210,7 +221,7 @@ class Player:
         self.fresh()
         if step["name"] not in self.desk.widgets():
             return
-        if not self.wait(lambda: self.desk.number_in(step["name"]) == float(step["text"]), 3.0):
+        if not self.wait(lambda: number_of(self.desk.text(step["name"])) == float(step["text"]), 3.0):
             self.find(Find("typed-number", f"\"{step['text']}\" typed into {step['name']} at {step['delay_ms']} ms a key became "
                            f"\"{self.desk.text(step['name'])}\"", {"delay_ms": step["delay_ms"]}, self.doing.step))
         self.over_view()
@@ -232,11 +243,11 @@ class Player:
         """Whatever is open but the main window answers to Escape."""
         for _ in range(6):
             self.fresh()
-            if [name for name in self.windows() if name != "mainWindow"] == []:
+            if not self.others():
                 return
             self.desk.key("Escape")
-            self.wait(lambda: self.windows() == ["mainWindow"], 1.0)
-        left = [name for name in self.windows() if name != "mainWindow"]
+            self.wait(lambda: not self.others(), 1.0)
+        left = self.others()
         if left and self.desk.app.poll() is None:
             self.find(Find("dialog-answers", f"{', '.join(left)} does not close at Escape", {}, self.doing.step))
 

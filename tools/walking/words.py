@@ -5,7 +5,8 @@ import re
 from .finds import Find
 
 WORD = re.compile(r"[A-Za-z][a-z]+(?:'[a-z]+)?")
-TAG = re.compile(r"<[^>]*>")
+# What stands in <code> is typed as it is.
+TAG = re.compile(r"<code>.*?</code>|<[^>]*>")
 # A path, an address, a file's name or an identifier is no word.
 PATH = re.compile(r"\S*[/\\_]\S*|\S+\.(?:h5|stl|handpiece|toml|png|html|csv|json|svg)\b|&[a-z]+;", re.IGNORECASE)
 
@@ -31,13 +32,14 @@ class Translated:
         self.names, self.seen = names, set()
 
     def see(self, told, doing):
+        if "QFileDialog" in told.get("windows", []):
+            return None  # Qt's own, in the desktop's language; with the names of files
         texts = dict(told.get("texts", {}))
         for place in told.get("places", {}):
             if "/" in place:
                 texts[place] = place.split("/", 1)[1]
         for widget, text in texts.items():
-            # Qt's own file dialog comes in the desktop's language.
-            if (widget, text) in self.seen or widget in self.OWN or widget.startswith(("QFileDialog", "fileName")):
+            if (widget, text) in self.seen or widget in self.OWN:
                 continue
             self.seen.add((widget, text))
             words = foreign(text, self.names)

@@ -77,7 +77,11 @@ class Force(unittest.TestCase):
 
 class Removed(unittest.TestCase):
     def judge(self, after, **changes):
-        return swept.judge(tooth, after, tooth, bur, stroke(**changes), 0.1)
+        return swept.judge(tooth, after, tooth, swept.Revolved(bur, RADIUS, 8.0), stroke(**changes), 0.1)
+
+    def test_the_table_is_the_bur(self):
+        places = np.random.default_rng(1).uniform([-1.0, -1.0, -0.8], [1.0, 1.0, 8.5], (2000, 3))
+        self.assertLess(np.abs(swept.Revolved(bur, RADIUS, 8.0)(places) - bur(places)).max(), 0.03)
 
     def test_a_groove_under_the_pointer(self):
         self.assertEqual(self.judge(groove(0.0, 4.0, 0.0, 1.5), stop_mm=1.5), [])

@@ -60,8 +60,9 @@ def judge_force(times, forces, press):
                              "over": round(float(size.max()) / press["load_n"], 3)})]
 
 
-def judge_removed(session, module, press, samples, times, origins, directions):
-    """Cuts the session again up to before and after the press; seconds of one core."""
+def judge_removed(session, module, whole, press, samples, times, origins, directions):
+    """Cuts the session again up to before and after the press, seconds of one core each. `whole`: the tooth at its
+    beginning."""
     span = (times >= press["from_s"] - 0.2) & (times <= press["to_s"] + 1.0)
     if not span.any() or not (samples["flags"][span] & CUTTING).any():
         return []
@@ -70,9 +71,9 @@ def judge_removed(session, module, press, samples, times, origins, directions):
     before = session.tooth_at(max(0.0, press["from_s"] - 0.1))
     after = session.tooth_at(min(float(times[-1]), press["to_s"] + 0.9))
     bur = module.Bur(press["bur"])
+    revolved = swept.Revolved(bur.distance, bur.max_radius_mm, bur.length_mm)
     places = samples["position_mm"][cutting]
     reach = bur.max_radius_mm + bur.length_mm + 1.0
-    whole = session.tooth_at(0.0)
     uncut = whole.field.distance if whole.is_cut else whole.distance
     tilts = np.unique(np.round(samples["orientation"][cutting][:: max(1, cutting.sum() // 50)], 3), axis=0)
     stroke = {"low": places.min(0) - reach, "high": places.max(0) + reach, "tilts": tilts, "origins": origins,
@@ -80,12 +81,12 @@ def judge_removed(session, module, press, samples, times, origins, directions):
     box = np.array(press["tooth_mm"])
     stroke["low"], stroke["high"] = np.maximum(stroke["low"], box[0]), np.minimum(stroke["high"], box[1])
     spacing = 2.0 * before.field.voxel_mm
-    return swept.judge(before.field.distance, after.field.distance, uncut, bur.distance, stroke, spacing)
+    return swept.judge(before.field.distance, after.field.distance, uncut, revolved, stroke, spacing)
 
 
-def judge(path, presses, module, most_sweeps):
+def judge(path, presses, module, most_sweeps, tell):
     """`presses`: what the walker logged of each (player.py), of this recording. Gives finds, each with its step."""
-    finds = []
+    finds, whole = [], None
     with module.Session(path) as session:
         samples = session.samples()
         times = samples["time_s"]
@@ -95,9 +96,17 @@ def judge(path, presses, module, most_sweeps):
             origins, directions = rays_of(press["hand"], press["pixels"])
             now = judge_hand(times, samples["position_mm"], press, origins, directions)
             now += judge_force(times, samples["force_n"], press)
-            if most_sweeps > 0 and press["bur"] in module.BURS:
+            inside = (times >= press["from_s"]) & (times <= press["to_s"])
+            cuts = bool((samples["flags"][inside] & CUTTING).any())
+            if cuts and most_sweeps > 0 and press["bur"] in module.BURS:
                 most_sweeps -= 1
-                now += judge_removed(session, module, press, samples, times, origins, directions)
+                whole = whole or session.tooth_at(0.0)
+                now += judge_removed(session, module, whole, press, samples, times, origins, directions)
+            if inside.any():
+                off = off_path(samples["position_mm"][inside], origins, directions).max()
+                force = np.linalg.norm(samples["force_n"][inside], axis=1).max()
+                tell(f"  press of step {press['step']}: hand at most {off:.2f} mm off its path, {force:.2f} N of "
+                     f"{press['load_n']:.1f}, {'cuts' if cuts else 'cuts nothing'}", quiet=True)
             for find in now:
                 find.step = press["step"]
             finds += now

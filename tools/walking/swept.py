@@ -36,6 +36,25 @@ def turned(quaternion, vectors):
     return vectors + w * t + np.cross(v, t)
 
 
+class Revolved:
+    """A bur's signed distances from a table over its radius and axis: it is turned about +z. Beyond the table: its edge's,
+    which is farther than anybody asks."""
+    FINE_MM = 0.02
+
+    def __init__(self, bur, radius_mm, length_mm, margin_mm=3.0):
+        self.low = -margin_mm
+        r = np.arange(0.0, radius_mm + margin_mm, self.FINE_MM)
+        z = np.arange(self.low, length_mm + margin_mm, self.FINE_MM)
+        places = np.stack(np.broadcast_arrays(r[:, None], 0.0, z[None, :]), -1).reshape(-1, 3)
+        self.table = bur(places).reshape(len(r), len(z)).astype(np.float32)
+
+    def __call__(self, points):
+        r = np.rint(np.hypot(points[:, 0], points[:, 1]) / self.FINE_MM).astype(np.int64)
+        z = np.rint((points[:, 2] - self.low) / self.FINE_MM).astype(np.int64)
+        rows, columns = self.table.shape
+        return self.table[np.clip(r, 0, rows - 1), np.clip(z, 0, columns - 1)]
+
+
 def outside_mm(points, bur, tilts, origins, directions, first):
     """How far each point is from the nearest bur of all: the tip anywhere on a line of sight from a millimetre before
     `first` (where that line meets tissue) to REACH_MM beyond. `bur` gives signed distances in its own frame."""

@@ -120,7 +120,7 @@ class Walk:
             presses = [press for press in self.player.log if press["recording"] == recording]
             if not presses or not pathlib.Path(recording).is_file():
                 continue
-            for find in recorded.judge(recording, presses, self.options.module, self.options.sweeps):
+            for find in recorded.judge(recording, presses, self.options.module, self.options.sweeps, self.tell):
                 same = [f for f in self.finds if f.invariant == find.invariant and f.step == find.step]
                 # The recording knows more than the maps.
                 if same:

@@ -195,7 +195,7 @@ class Memory(unittest.TestCase):
         self.assertIsNone(memory.judge([(s, 300.0 + s) for s in range(0, 100, 5)]))
 
     def test_beyond_all_measure(self):
-        self.assertIsNotNone(memory.judge([(0, 500.0), (2, 4000.0)]))
+        self.assertIsNotNone(memory.judge([(0, 500.0), (2, 4100.0)]))
 
 
 if __name__ == "__main__":

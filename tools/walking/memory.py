@@ -8,7 +8,7 @@ from .finds import Find
 
 # Strokes that can be undone are kept, a tooth that is opened is another: this much is theirs.
 GROWS_BY, MORE_MB, LONG_S = 1.25, 120.0, 600.0
-MOST_MB = 3000.0
+MOST_MB = 4000.0
 
 
 def resident_mb(pid):

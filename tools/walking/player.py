@@ -76,6 +76,7 @@ class Player:
             return False
         if "welcomeClose" in self.desk.widgets():
             self.desk.click("welcomeClose")
+        self.look()
         return True
 
     # The steps.
@@ -185,7 +186,8 @@ class Player:
                 or hand.get("compare") or hand["camera"].get("mirrored") or "shift" in step.get("keys", [])):
             return
         shift = min(shifts)
-        self.log.append({"step": self.doing.step, "recording": hand["recording"], "hand": {k: hand[k] for k in ("camera", "viewport")},
+        sitting = self.watch.sittings.get(hand["recording"], (0, 0))[1]
+        self.log.append({"step": self.doing.step, "sitting": sitting, "recording": hand["recording"], "hand": {k: hand[k] for k in ("camera", "viewport")},
                          "pixels": pixels, "from_s": began + 0.25 - shift, "to_s": ended - 0.1 - shift, "load_n": hand["loadN"],
                          "stop_mm": hand.get("stopMm"), "bur": hand["bur"], "tooth_mm": hand["toothMm"]})
 

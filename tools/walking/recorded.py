@@ -92,7 +92,11 @@ def judge(path, presses, module, most_sweeps, tell):
         times = samples["time_s"]
         if not len(times):
             return finds
+        began = [0.0] + [event["time_s"] for event in session.events() if event["name"] == "resume"]
         for press in presses:
+            if press["sitting"] >= len(began):
+                continue
+            press = {**press, "from_s": press["from_s"] + began[press["sitting"]], "to_s": press["to_s"] + began[press["sitting"]]}
             origins, directions = rays_of(press["hand"], press["pixels"])
             now = judge_hand(times, samples["position_mm"], press, origins, directions)
             now += judge_force(times, samples["force_n"], press)

@@ -74,6 +74,8 @@ class Walk:
             finally:
                 watch.stop()
             for series in watch.memory.values():
+                self.tell(f"  memory: {series[0][1]:.0f} MB at first, {max(mb for _, mb in series):.0f} at most, {series[-1][1]:.0f} at the "
+                          f"end of {series[-1][0] - series[0][0]:.0f} s", quiet=True)
                 find = memory.judge(series)
                 if find:
                     self.found(find)
@@ -90,6 +92,8 @@ class Walk:
             self.done.append(step)
             self.tell(f"  {number:4d} {json.dumps(step, ensure_ascii=False)}", quiet=True)
             self.player.do(number, step)
+            if number % 10 == 9:
+                self.tell(f"  {memory.resident_mb(self.desk.app.pid):.0f} MB", quiet=True)
 
     def read_errors(self, file):
         lines = [line for line in file.read_text(errors="replace").splitlines() if line.strip() and not

@@ -20,6 +20,7 @@ class Watch:
         self.desk, self.invariants, self.when_found = desk, invariants, when_found
         self.doing = None
         self.maps, self.memory = [], {}
+        self.sittings = {}  # of each recording: the newest tick of its loop, and how often that has begun anew
         self.paused, self.ended = True, False
         self.lock = threading.Lock()
         self.stamp, self.heard = None, time.monotonic()
@@ -29,6 +30,7 @@ class Watch:
     def renew(self):
         with self.lock:
             self.paused, self.stamp, self.heard = False, None, time.monotonic()
+            self.maps.clear()
 
     def pause(self):
         with self.lock:
@@ -74,6 +76,7 @@ class Watch:
             return finds
         self.stamp, self.heard = stamp, now
         told.setdefault("hand", {})
+        self._count(told["hand"])
         self.maps.append(told)
         del self.maps[:-REMEMBERED]
         series = self.memory.setdefault(self.desk.app.pid, [])
@@ -84,6 +87,12 @@ class Watch:
             if find:
                 finds.append(self._at(find))
         return finds
+
+    def _count(self, hand):
+        """A recording that goes on (after a replay, a crash) has a loop that counts from nought again."""
+        if hand.get("mode") == "live" and hand.get("recording"):
+            tick, times = self.sittings.get(hand["recording"], (0, 0))
+            self.sittings[hand["recording"]] = hand["tick"], times + (hand["tick"] < tick)
 
     def _at(self, find):
         find.step = self.doing.step

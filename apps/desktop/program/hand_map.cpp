@@ -120,13 +120,14 @@ void HandMap::addHand(QJsonObject& told) const {
 void HandMap::addEye(QJsonObject& told) const {
     const ViewWidget& view = *host_.window().view();
     const OverlayState written = view.written();
-    const view::Viewport viewport{std::max(1, written.compare ? view.width() / 2 : view.width()),
+    // The hand's, at once; what is written goes with the picture, which comes a while later.
+    const view::Viewport viewport{std::max(1, view.isComparing() ? view.width() / 2 : view.width()),
                                   std::max(1, view.height())};
     const QJsonObject eye = eyeObject(view.camera(), viewport, host_.simulator().tooth()->model().tree.bounds());
     for (auto entry = eye.begin(); entry != eye.end(); ++entry)
         told.insert(entry.key(), entry.value());
     if (written.pointer) told.insert("pointer", QJsonArray{written.pointer->x(), written.pointer->y()});
-    told.insert("compare", written.compare);
+    told.insert("compare", view.isComparing());
     told.insert("isDrill", written.tool == Tool::drill);
     told.insert("hint", written.hint);
     told.insert("message", written.message);

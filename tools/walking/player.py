@@ -5,7 +5,7 @@ import re
 import subprocess
 import time
 
-from . import spots
+from . import patience, spots
 from .finds import Find
 from .live import Doing
 
@@ -42,7 +42,7 @@ class Player:
         return [name for name in self.windows() if name not in ("mainWindow", "qtooltip_label")]
 
     def wait(self, happens, seconds):
-        end = time.monotonic() + seconds
+        end = time.monotonic() + seconds * patience.times()
         while time.monotonic() < end:
             if happens():
                 return True

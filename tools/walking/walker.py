@@ -48,7 +48,7 @@ class Walk:
                 pass
 
     def walk(self, steps, until):
-        """Does `steps` (an iterator) until the clock says `until`, or one of `until.invariant` is found."""
+        """Does `steps` (an iterator) until `until` says it is enough."""
         self.player = None
         start = self.way["start"]
         arguments = ["--no-sound", "--language", start["language"], "--layout", start["layout"], *start.get("arguments", [])]
@@ -67,6 +67,7 @@ class Walk:
             self.player = Errands(self.desk, watch, self.found, self.way, arguments)
             try:
                 if self.player.begin():
+                    until.begin()
                     self.go(steps, until)
                 if self.desk.app.poll() is None:
                     self.player.at_rest()
@@ -114,7 +115,8 @@ class Walk:
                 matches = json.loads(done.stdout)["matches"]
             except (ValueError, KeyError):
                 matches = False
-            if not matches:
+            # Killed before its first key frame: there is nothing that it could be held to.
+            if not matches and "before it told a state" not in done.stderr:
                 self.finds.append(Find("replay-matches", "cut again, the recording is another tooth: "
                                        f"{(done.stderr or done.stdout).strip()[-200:]}"))
         if self.options.module is None:
@@ -144,5 +146,10 @@ class Walk:
 
 
 class Until:
-    def __init__(self, clock_s, invariant=None):
-        self.clock_s, self.invariant = clock_s, invariant
+    """Some minutes from when the tooth is there, or this find."""
+
+    def __init__(self, minutes, invariant=None):
+        self.minutes, self.invariant = minutes, invariant
+
+    def begin(self):
+        self.clock_s = time.monotonic() + 60.0 * self.minutes

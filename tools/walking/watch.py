@@ -4,11 +4,11 @@ import json
 import threading
 import time
 
-from . import memory
+from . import memory, patience
 from .finds import Find
 
 EVERY_S = 0.08
-# A map comes five times a second; so long may a busy machine, or a long job on the window's thread, keep it.
+# A map comes five times a second; so long may a long job on the window's thread keep it, on a machine of one's own.
 ANSWERS_WITHIN_S = 15.0
 REMEMBERED = 3000
 
@@ -70,9 +70,9 @@ class Watch:
         except (OSError, ValueError):
             told = None
         if told is None:
-            if now - self.heard > ANSWERS_WITHIN_S:
+            if now - self.heard > ANSWERS_WITHIN_S * patience.times():
+                finds.append(self._at(Find("answers", f"the window has not answered for {now - self.heard:.0f} s")))
                 self.heard = now + 3600.0  # told once
-                finds.append(self._at(Find("answers", f"the window has not answered for {ANSWERS_WITHIN_S:.0f} s")))
             return finds
         self.stamp, self.heard = stamp, now
         told.setdefault("hand", {})

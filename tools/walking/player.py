@@ -174,7 +174,8 @@ class Player:
         ended = time.monotonic()
         self.doing.pixels = []
         after = self.fresh()
-        self.at_rest()
+        if not self.at_rest() and self.desk.app.poll() is None:
+            self.find(Find("comes-to-rest", f"{RESTS_S:.0f} s after the button was let go the stroke has not ended"))
         self.note_press(hand, after, pixels, began, ended, step)
 
     def note_press(self, hand, after, pixels, began, ended, step):

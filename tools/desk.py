@@ -24,9 +24,10 @@ def missing():
 
 class Desk:
     """`build`: a folder under build/, or the program itself. `home`: settings, recordings and what goes with them; its
-    own by default. The teeth are taken from (and left in) the caller's cache."""
+    own by default. The teeth are taken from (and left in) the caller's cache. `errors`: a file for what it says on
+    stderr."""
 
-    def __init__(self, arguments=(), size="1440x900", display=None, build="release", home=None, environment=()):
+    def __init__(self, arguments=(), size="1440x900", display=None, build="release", home=None, environment=(), errors=None):
         self.folder = pathlib.Path(home or tempfile.mkdtemp(prefix="handpiece-desk-"))
         self.map_file = self.folder / "widgets.json"
         # Xvfb takes a free number by itself and tells it.
@@ -52,13 +53,15 @@ class Desk:
             self.program = ROOT / "build" / build / "bin" / "handpiece-desktop"
         if not self.program.is_file():
             raise SystemExit(f"{self.program} is not built")
-        self.app = None
+        self.app, self.errors = None, errors
         self.start(arguments)
 
     def start(self, arguments=()):
         """The program, its window over the whole screen."""
         self.map_file.unlink(missing_ok=True)
-        self.app = subprocess.Popen([str(self.program), *map(str, arguments)], env=self.environment)
+        with open(self.errors or os.devnull, "ab") as told:
+            self.app = subprocess.Popen([str(self.program), *map(str, arguments)], env=self.environment,
+                                        stderr=told if self.errors else None)
         self.wait_for("mainWindow")
         for window in self.windows("handpiece"):
             subprocess.run(["xdotool", "windowmove", window, "0", "0", "windowsize", window, *map(str, self.size)],

@@ -2,6 +2,7 @@
 #include <cstdio>
 
 #include "desktop/framework/application.h"
+#include "desktop/program/hand_map.h"
 #include "desktop/program/host.h"
 #include "desktop/program/widget_map.h"
 #include "handpiece/base/core/any_error.h"
@@ -45,7 +46,8 @@ int main(int argc, char** argv) {
         };
         host.start();
         if (const QString map = qEnvironmentVariable("HANDPIECE_WIDGET_MAP"); !map.isEmpty())
-            desktop::writeWidgetMap(&application, map);
+            desktop::writeWidgetMap(&application, map,
+                                    [hand = std::make_shared<desktop::HandMap>(host)] { return hand->now(); });
         return QApplication::exec();
     } catch (const std::exception& error) {
         std::fprintf(stderr, "handpiece-desktop: %s\n", core::asError(error).what());

@@ -13,21 +13,36 @@
 #include <QLineEdit>
 #include <QMenu>
 #include <QMenuBar>
+#include <QMessageBox>
+#include <QMetaEnum>
 #include <QPlainTextEdit>
 #include <QSaveFile>
 #include <QStatusBar>
 #include <QTabBar>
 #include <QTimer>
 #include <QToolBar>
+#include <utility>
 
 namespace handpiece::desktop {
 namespace {
 
 constexpr int kEveryMs = 200;
 
+/// The buttons of a question have none: what they stand for, in any language.
+QString nameOf(const QWidget& widget) {
+    const QString name = widget.objectName();
+    const auto* button = qobject_cast<const QAbstractButton*>(&widget);
+    const auto* box = qobject_cast<const QMessageBox*>(widget.window());
+    if (!name.isEmpty() || button == nullptr || box == nullptr) return name;
+    const auto standard = box->standardButton(const_cast<QAbstractButton*>(button));
+    if (standard == QMessageBox::NoButton) return name;
+    return QLatin1String("button/") +
+           QString::fromLatin1(QMetaEnum::fromType<QMessageBox::StandardButtons>().valueToKey(standard));
+}
+
 struct Map {
     QJsonObject places, texts;
-    QJsonArray on, off;
+    QJsonArray on, off, windows;
 
     void place(const QString& name, const QWidget& in, const QRect& area) {
         const QPoint at = in.mapToGlobal(area.topLeft());
@@ -45,7 +60,9 @@ struct Map {
     }
 
     void add(const QWidget& widget) {
-        const QString name = widget.objectName();
+        const QString name = nameOf(widget);
+        if (widget.isWindow())
+            windows.append(name.isEmpty() ? QString::fromLatin1(widget.metaObject()->className()) : name);
         if (const auto* menu = qobject_cast<const QMenu*>(&widget))
             for (QAction* action : menu->actions())
                 addAction(*action, *menu, menu->actionGeometry(action));
@@ -90,22 +107,24 @@ struct Map {
     }
 };
 
-QByteArray mapNow() {
+QByteArray mapNow(const std::function<QJsonObject()>& hand) {
     Map map;
     for (const QWidget* widget : QApplication::allWidgets())
         if (widget->isVisible() && !widget->visibleRegion().isEmpty()) map.add(*widget);
-    return QJsonDocument(QJsonObject{{"places", map.places}, {"texts", map.texts}, {"on", map.on}, {"off", map.off}})
-        .toJson(QJsonDocument::Compact);
+    QJsonObject all{
+        {"places", map.places}, {"texts", map.texts}, {"on", map.on}, {"off", map.off}, {"windows", map.windows}};
+    if (hand) all.insert("hand", hand());
+    return QJsonDocument(all).toJson(QJsonDocument::Compact);
 }
 
 }  // namespace
 
-void writeWidgetMap(QObject* parent, const QString& file) {
+void writeWidgetMap(QObject* parent, const QString& file, std::function<QJsonObject()> hand) {
     auto* timer = new QTimer(parent);
-    QObject::connect(timer, &QTimer::timeout, parent, [file] {
+    QObject::connect(timer, &QTimer::timeout, parent, [file, hand = std::move(hand)] {
         QSaveFile out(file);
         if (!out.open(QIODevice::WriteOnly)) return;
-        out.write(mapNow());
+        out.write(mapNow(hand));
         out.commit();
     });
     timer->start(kEveryMs);

@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "desktop/features/exercise/live_card.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
 
@@ -55,7 +56,13 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     live->addWidget(target_);
     beyond_ = note({}, live_, "exerciseBeyond");
     live->addWidget(beyond_);
+    card_ = new LiveCard(live_);
+    live->addWidget(card_);
     column->addWidget(live_);
+    undo_ = note(tr("Undo takes back the whole stroke, with what it did to gingiva and adjacent teeth. How often you "
+                    "undo is kept with the work."),
+                 this, "exerciseUndo");
+    column->addWidget(undo_);
     review_ = new QWidget(this);
     recordings_ = new QVBoxLayout(review_);
     recordings_->setContentsMargins(0, 0, 0, 0);
@@ -84,6 +91,7 @@ void ExercisePanel::setText(const ExerciseText& text) {
                                         : tr("Not in this exercise: %1").arg(text.locked.join(QStringLiteral("; "))));
     finish_->setVisible(text.canFinish);
     live_->setVisible(text.hasLiveBar);
+    undo_->setVisible(text.saysWhatUndoDoes);
     showReview(text.review);
 }
 
@@ -115,6 +123,10 @@ void ExercisePanel::setShares(const LiveShares* shares) {
         line(tr("Protected, and cut: %1 mm³"), shares->protectedMm3);
     }
     beyond_->setText(lines.isEmpty() ? tr("Nothing beside the target") : lines.join(QLatin1Char('\n')));
+}
+
+void ExercisePanel::setValues(const std::vector<course::LiveValue>& values, const rubric::Rubric& rubric) {
+    card_->setValues(values, rubric);
 }
 
 void ExercisePanel::showReview(const ExerciseText::Review& review) {

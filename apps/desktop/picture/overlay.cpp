@@ -465,7 +465,8 @@ void markWords(QPainter& p, const Area& area, const QPointF& at, double ringRadi
     box.moveTop(std::clamp(at.y() - box.height() / 2.0, area.box.top() + 4.0,
                            std::max(area.box.top() + 4.0, area.box.bottom() - box.height() - 4.0)));
     box.moveLeft(isRight ? at.x() + gap : at.x() - gap - box.width());
-    haloLine(p, {isRight ? box.left() : box.right(), at.y()}, {at.x() + (isRight ? 1 : -1) * ringRadius, at.y()}, kLine);
+    haloLine(p, {isRight ? box.left() : box.right(), at.y()}, {at.x() + (isRight ? 1 : -1) * ringRadius, at.y()},
+             kLine);
     area.labels.push_back(box);
     paintPanel(p, box);
     p.setPen(kText);

@@ -15,9 +15,10 @@ constexpr int kPauseMs = 500;
 constexpr float kLeftOpacity = 0.34f, kOverOpacity = 0.9f;
 
 view::GlassSurface glassOf(geometry::TriangleMesh&& mesh, const QColor& colour, float opacity) {
-    return {std::make_shared<const geometry::TriangleMesh>(std::move(mesh)),
-            {static_cast<float>(colour.redF()), static_cast<float>(colour.greenF()), static_cast<float>(colour.blueF())},
-            opacity};
+    return {
+        std::make_shared<const geometry::TriangleMesh>(std::move(mesh)),
+        {static_cast<float>(colour.redF()), static_cast<float>(colour.greenF()), static_cast<float>(colour.blueF())},
+        opacity};
 }
 
 }  // namespace

@@ -79,14 +79,6 @@ score::CriterionScore scoreOf(const rubric::Criterion& c, double value) {
     return s;
 }
 
-class Language {
-  public:
-    explicit Language(const char* language) : here_(language) {}
-
-  private:
-    config::LanguageHere here_;
-};
-
 bool says(const std::string& sentence, const char* what) {
     return std::regex_search(sentence, std::regex(what));
 }
@@ -103,7 +95,7 @@ TEST(Advice, OfEveryCriterionSaysTheRightSide) {
             const Said* said = saidOf(c);
             ASSERT_NE(said, nullptr) << "no sentence is known for " << c.measure << " " << c.of.zone << c.of.tissue;
             for (const char* language : {"en", "ja"}) {
-                const Language here(language);
+                const config::LanguageHere here(language);
                 const bool isEnglish = std::string_view(language) == "en";
                 const char *low = isEnglish ? said->low : said->lowJa, *high = isEnglish ? said->high : said->highJa;
                 if (wanted.from) {
@@ -111,7 +103,7 @@ TEST(Advice, OfEveryCriterionSaysTheRightSide) {
                     const Advice is = adviceOf(scoreOf(c, *wanted.from - 0.3), rubric, {});
                     EXPECT_EQ(is.off, Off::tooLow);
                     EXPECT_TRUE(says(is.words, low)) << is.words;
-                    if (*high != '\0') EXPECT_FALSE(says(is.words, high)) << is.words;
+                    EXPECT_TRUE(*high == '\0' || !says(is.words, high)) << is.words;
                     EXPECT_THAT(is.words, HasSubstr("0.3")) << "by how much";
                     EXPECT_LT(is.fault.size(), is.words.size());
                     ++sentences;
@@ -121,13 +113,13 @@ TEST(Advice, OfEveryCriterionSaysTheRightSide) {
                     const Advice is = adviceOf(scoreOf(c, *wanted.to + 0.3), rubric, {});
                     EXPECT_EQ(is.off, Off::tooHigh);
                     EXPECT_TRUE(says(is.words, high)) << is.words;
-                    if (*low != '\0') EXPECT_FALSE(says(is.words, low)) << is.words;
+                    EXPECT_TRUE(*low == '\0' || !says(is.words, low)) << is.words;
                     EXPECT_THAT(is.words, HasSubstr("0.3"));
                     ++sentences;
                 }
                 const double right = wanted.from && wanted.to ? 0.5 * (*wanted.from + *wanted.to)
-                                     : wanted.from           ? *wanted.from
-                                                             : *wanted.to;
+                                     : wanted.from            ? *wanted.from
+                                                              : *wanted.to;
                 EXPECT_EQ(adviceOf(scoreOf(c, right), rubric, {}).words, "") << "nothing is off";
             }
         }
@@ -141,7 +133,7 @@ TEST(Advice, NeverSaysTheSameForBothSides) {
         for (const auto& [id, text] : words.texts())
             if (id.starts_with("advice.") && id.ends_with("-low")) {
                 const std::string other = id.substr(0, id.size() - 4) + "-high";
-                if (words.has(other)) EXPECT_NE(text, words.text(other)) << language << " " << id;
+                EXPECT_TRUE(!words.has(other) || text != words.text(other)) << language << " " << id;
                 EXPECT_THAT(text, HasSubstr("{0}")) << id << ": by how much";
             }
     }
@@ -166,7 +158,7 @@ TEST(Advice, NamesThePlaceAsADentistDoes) {
     EXPECT_THAT(is.words, HasSubstr("0.3 mm too deep, most of all distally"));
     EXPECT_EQ(is.at, &s.evidence[2]);
     {
-        const Language here("ja");
+        const config::LanguageHere here("ja");
         EXPECT_THAT(adviceOf(s, rubric, molar).words, HasSubstr("特に遠心で0.3 mm 深い"));
     }
     const auto side = [](const Bearings& of, const Vec3& p) { return std::string(sideOf(of, p)); };
@@ -208,7 +200,7 @@ TEST(Critical, SaysWhatHappenedAndNotTheCriterion) {
         for (const rubric::Criterion& c : one.criteria)
             if (c.critical)
                 for (const char* language : {"en", "ja"}) {
-                    const Language here(language);
+                    const config::LanguageHere here(language);
                     const std::string words = whatHappened(one, c.id);
                     EXPECT_FALSE(words.empty()) << name << " " << c.id;
                     EXPECT_FALSE(says(words, "untouched|intact|no |触れない|保つ")) << name << " " << words;

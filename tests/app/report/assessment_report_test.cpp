@@ -85,7 +85,8 @@ TEST(StudentReport, SaysAllThatItMustAndLoadsNothing) {
 
     const Language language("ja");
     const std::string japanese = studentReport(result, task(), rubric, pictures);
-    for (const char* part : {"<html lang=\"ja\">", "1 級窩洞", "不合格", "重大な誤り", "まず取り組むこと", "次にすること：", "深い"})
+    for (const char* part :
+         {"<html lang=\"ja\">", "1 級窩洞", "不合格", "重大な誤り", "まず取り組むこと", "次にすること：", "深い"})
         EXPECT_THAT(japanese, HasSubstr(part));
     for (const char* part : {"To work on", "Critical", "passed", "points lost", "What to do"})
         EXPECT_THAT(japanese, Not(HasSubstr(part)));

@@ -161,8 +161,8 @@ void ExerciseFeature::showDocument() {
     const std::shared_ptr<const tasks::Task>& task = simulator_.task();
     const exercise::Permissions may = simulator_.permissions();
     // By oneself, and in an exam, nobody tells.
-    text.hasLiveBar = isAtWork && task && task->hasLiveBar && task->preparation && !simulator_.exam() &&
-                      !isUnaided(*task);
+    text.hasLiveBar =
+        isAtWork && task && task->hasLiveBar && task->preparation && !simulator_.exam() && !isUnaided(*task);
     text.saysWhatUndoDoes = text.canFinish && !may.locks(exercise::Operation::undo);
     panel_->setText(text);
     panel_->setShares(nullptr);

@@ -36,8 +36,7 @@ QString bestWords(const Reached& reached) {
     return reached.bestPercent
                ? QCoreApplication::translate("ExerciseSteps", "Best so far: %1 %. Attempts: %2")
                      .arg(QLocale().toString(*reached.bestPercent, 'f', 0), count)
-               : QCoreApplication::translate("ExerciseSteps",
-                                             "Attempts so far: %1; of none could all be measured.")
+               : QCoreApplication::translate("ExerciseSteps", "Attempts so far: %1; of none could all be measured.")
                      .arg(count);
 }
 

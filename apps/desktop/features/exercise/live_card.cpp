@@ -34,10 +34,10 @@ void LiveCard::setValues(const std::vector<course::LiveValue>& values, const rub
     QStringList said;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const course::LiveValue& v = values[i];
-        const QString sign = !v.value                            ? QStringLiteral("·")
-                             : v.off == report::Off::no          ? QStringLiteral("✓")
-                             : v.off == report::Off::tooLow      ? QStringLiteral("▼")
-                                                                 : QStringLiteral("▲");
+        const QString sign = !v.value                       ? QStringLiteral("·")
+                             : v.off == report::Off::no     ? QStringLiteral("✓")
+                             : v.off == report::Off::tooLow ? QStringLiteral("▼")
+                                                            : QStringLiteral("▲");
         const QString tip = !v.value                       ? tr("not to be measured yet")
                             : v.off == report::Off::no     ? tr("as it was asked")
                             : v.off == report::Off::tooLow ? tr("less than was asked")

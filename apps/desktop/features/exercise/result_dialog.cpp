@@ -102,7 +102,8 @@ QWidget* ResultDialog::makeResult() {
     table_ = named(new QTableWidget(page), "resultTable", tr("All that was judged"),
                    tr("A click on a row with a place turns the eye there and plays the seconds in which it happened"));
     table_->setColumnCount(columnCount);
-    table_->setHorizontalHeaderLabels({tr("What was judged"), tr("Yours"), tr("Asked"), tr("Points"), tr("Why not all points")});
+    table_->setHorizontalHeaderLabels(
+        {tr("What was judged"), tr("Yours"), tr("Asked"), tr("Points"), tr("Why not all points")});
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     for (const Column column : {criterion, why})
         table_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::Stretch);

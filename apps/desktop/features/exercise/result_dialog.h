@@ -55,7 +55,7 @@ class ResultDialog : public QDialog {
     /// Before the result is seen; not at all where nobody was asked.
     void judged(const handpiece::desktop::OwnJudgement& own);
     /// To be looked at: a place, and the seconds in which it happened where they are known; `words` are said there.
-    void evidenceChosen(const handpiece::measures::Evidence& evidence, const QString& words);
+    void evidenceChosen(const handpiece::measures::Evidence& evidence, const QString& words = {});
     /// An exercise that comes along, which trains what cost points.
     void practiseRequested(const QString& exercise);
     void againRequested();

@@ -53,8 +53,7 @@ QString whyNot(const course::FinishedWork& work, const score::CriterionScore& c,
                    .arg(QLocale().toString(c.uncertainty, 'g', 2));
     if (c.points && c.ownPoints - *c.points >= 0.05)
         why << phrased(QT_TRANSLATE_NOOP("Assessment", "%1 points times %2: the work is not finished"))
-                   .arg(QLocale().toString(c.ownPoints, 'f', 1),
-                        QLocale().toString(*c.points / c.ownPoints, 'f', 2));
+                   .arg(QLocale().toString(c.ownPoints, 'f', 1), QLocale().toString(*c.points / c.ownPoints, 'f', 2));
     return why.join(QLatin1Char('\n'));
 }
 
@@ -88,9 +87,10 @@ ResultRow resultRow(const course::FinishedWork& work, const score::CriterionScor
 }
 
 QString placeWords(const ResultRow& row) {
-    QString words = row.asked.isEmpty()
-                        ? phrased(QT_TRANSLATE_NOOP("Assessment", "%1: %2")).arg(row.name, row.value)
-                        : phrased(QT_TRANSLATE_NOOP("Assessment", "%1: %2, asked: %3")).arg(row.name, row.value, row.asked);
+    QString words =
+        row.asked.isEmpty()
+            ? phrased(QT_TRANSLATE_NOOP("Assessment", "%1: %2")).arg(row.name, row.value)
+            : phrased(QT_TRANSLATE_NOOP("Assessment", "%1: %2, asked: %3")).arg(row.name, row.value, row.asked);
     return row.advice.isEmpty() ? words : words + QLatin1Char('\n') + row.advice;
 }
 

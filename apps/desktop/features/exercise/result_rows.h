@@ -11,9 +11,9 @@ namespace handpiece::desktop {
 
 struct ResultRow {
     QString name, value, asked, points;
-    QString why;     ///< not all of its points, or what else is to be said of it
-    QString exact;   ///< the value with its uncertainty
-    QString advice;  ///< what to do; empty where nothing is off
+    QString why;                             ///< not all of its points, or what else is to be said of it
+    QString exact;                           ///< the value with its uncertainty
+    QString advice;                          ///< what to do; empty where nothing is off
     std::string exercise;                    ///< that trains it, by its id; empty: none
     const measures::Evidence* at = nullptr;  ///< where to look; null: nowhere
 };

@@ -229,14 +229,16 @@ void MeasureFeature::takeSection() {
     box_->setSection(place.has_value(), orientationOf(shown.direction), shown.offsetMm);
 }
 
-/// Depth under the bur's tip while it touches, else what was measured last; a tenth of a second is quick enough to read.
+/// Depth under the bur's tip while it touches, else what was measured last; a tenth of a second is quick enough to
+/// read.
 void MeasureFeature::showReadouts() {
     if (!window_.isVisible() || !simulator_.tooth()) return;
     const messages::HapticSample sample = view_.sample();
     const bool mayRead = view_.permissions().allows(exercise::Operation::depthReadout);
     if (sample.tick == 0 || sample.depthMm < -0.05 || !mayRead) {
         box_->setDepth(mayRead ? probedDepthMm_ : std::nullopt);
-        box_->setLeftOverPulp(mayRead ? probedLeftMm_ : std::nullopt, mayRead && probedLeftMm_ && *probedLeftMm_ <= 0.0);
+        box_->setLeftOverPulp(mayRead ? probedLeftMm_ : std::nullopt,
+                              mayRead && probedLeftMm_ && *probedLeftMm_ <= 0.0);
         return;
     }
     // Who cuts on makes what was measured a thing of the past.

@@ -134,8 +134,7 @@ class HandListener : public Listener {
         for (const double ofTissue : record.removedMm3)
             removedMm3 += ofTissue;
         // What comes back, or goes again, while a step is taken is no cut.
-        s.hasRemoved =
-            (record.flags & messages::kRestoring) == 0 && removedMm3 > removedMm3_.value_or(removedMm3);
+        s.hasRemoved = (record.flags & messages::kRestoring) == 0 && removedMm3 > removedMm3_.value_or(removedMm3);
         removedMm3_ = removedMm3;
         hand_.take(s);
     }

@@ -12,9 +12,9 @@ namespace handpiece::course {
 namespace {
 
 constexpr std::array<std::string_view, 13> kShown{
-    "axial-depth",   "cavosurface-angle",    "floor-depth", "floor-depth-shortest", "isthmus",
-    "isthmus-share", "marginal-ridge-left",  "margin-width", "occlusal-convergence", "outline-extent",
-    "reduction",     "wall-angle",           "wall-height"};
+    "axial-depth",   "cavosurface-angle",   "floor-depth",  "floor-depth-shortest", "isthmus",
+    "isthmus-share", "marginal-ridge-left", "margin-width", "occlusal-convergence", "outline-extent",
+    "reduction",     "wall-angle",          "wall-height"};
 
 }  // namespace
 

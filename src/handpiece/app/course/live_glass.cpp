@@ -46,8 +46,7 @@ geometry::TriangleMesh hatched(const geometry::TriangleMesh& mesh, double stripe
         }
         const double step = 2.0 * stripeMm;
         for (double from = step * std::floor(low / step); from < high; from += step) {
-            const std::vector<Vec3> piece =
-                clipped(clipped(whole, slant, from, 1.0), slant, from + stripeMm, -1.0);
+            const std::vector<Vec3> piece = clipped(clipped(whole, slant, from, 1.0), slant, from + stripeMm, -1.0);
             if (piece.size() < 3) continue;
             const auto first = static_cast<std::uint32_t>(stripes.vertices.size());
             stripes.vertices.insert(stripes.vertices.end(), piece.begin(), piece.end());

@@ -92,8 +92,8 @@ constexpr Row kOther{"", "", "other", ""};
 const Row& rowOf(const score::CriterionScore& c) {
     const std::string& by = c.of.zone.empty() ? c.of.tissue : c.of.zone;
     const auto fits = [&](const Row& row) {
-        const bool isThis =
-            row.measure.ends_with('-') ? std::string_view(c.measure).starts_with(row.measure) : c.measure == row.measure;
+        const bool isThis = row.measure.ends_with('-') ? std::string_view(c.measure).starts_with(row.measure)
+                                                       : c.measure == row.measure;
         return isThis && (row.narrowed == by || (row.narrowed == "*" && !by.empty()));
     };
     const auto* const row = std::find_if(kRows.begin(), kRows.end(), fits);
@@ -102,8 +102,7 @@ const Row& rowOf(const score::CriterionScore& c) {
 
 /// That a value was taken of many places, of which one stands out.
 bool isOfMany(const measures::Evidence& e) {
-    return e.text == measures::kLeastHere || e.text == measures::kMostHere ||
-           e.text == "most is still to be cut here";
+    return e.text == measures::kLeastHere || e.text == measures::kMostHere || e.text == "most is still to be cut here";
 }
 
 /// " mesially", ", most of all mesially"; empty: there is nothing to be said.

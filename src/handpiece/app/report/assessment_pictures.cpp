@@ -168,8 +168,7 @@ Vec3 middleOf(const tooth::ToothModel& whole, const tooth::StateDelta& own, cons
 
 AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teeth& teeth, const tooth::StateDelta& own,
                                       const score::Assessment& assessment, const rubric::Rubric& rubric,
-                                      const PictureSettings& settings,
-                                      const core::Progress& progress) {
+                                      const PictureSettings& settings, const core::Progress& progress) {
     AssessmentPictures pictures;
     const std::shared_ptr<const tooth::ToothModel>& whole = teeth.front();
     std::optional<preparation::Laid> laid;
@@ -238,8 +237,7 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
                 // Those of teeth beside lie in these, which are not drawn.
                 if (criterion.measure.rfind("adjacent-", 0) == 0) continue;
                 const rubric::Criterion* asks = rubric.criterion(criterion.id);
-                const Off off =
-                    asks && criterion.value ? offOf(wantedOf(*asks, rubric), *criterion.value) : Off::no;
+                const Off off = asks && criterion.value ? offOf(wantedOf(*asks, rubric), *criterion.value) : Off::no;
                 if (const measures::Evidence* e = placeOf(criterion, off); e != nullptr && e->placeMm)
                     pictures.places[criterion.id] = artist.place(*e->placeMm, draw);
             }

@@ -104,7 +104,7 @@ Json errorsOf(const ReviewedAgainst& against, std::span<const Sitting> sittings)
         Json error{{"title", criterionTitle(*against.rubric, c.id)},
                    {"lost", c.critical == score::Verdict::yes ? words().text("rubric.critical")
                                                               : lost(c.maxPoints - c.ownPoints)},
-                   {"measured", c.value ? valueOf(c) : said(c.reason)}};
+                   {"measured", c.value ? valueOf(c) : report::said(c.reason)}};
         const Advice advice = adviceOf(c, *against.rubric, bearings);
         error["practise"] = advice.words;
         if (advice.at != nullptr) lead(error, {*advice.at});

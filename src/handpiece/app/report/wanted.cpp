@@ -83,12 +83,11 @@ double offBy(const Wanted& wanted, double value) {
 std::string amountText(double value, const std::string& unit) {
     const double size = std::abs(value);
     // A tenth of a millimetre is what a hand can do something about.
-    const int decimals = unit == "deg" || unit == "um" || unit == "rpm" ? 0
-                         : unit == "%"                                  ? (size < 0.95 ? 1 : 0)
-                         : unit.empty()                                 ? (size == std::floor(size) ? 0 : 1)
-                         : size >= 9.95                                 ? 0
-                         : size >= 0.095                                ? 1
-                                                                        : 2;
+    const int decimals = unit == "deg" || unit == "um" || unit == "rpm" || unit == "%" ? (size < 0.95 ? 1 : 0)
+                         : unit.empty()  ? (size == std::floor(size) ? 0 : 1)
+                         : size >= 9.95  ? 0
+                         : size >= 0.095 ? 1
+                                         : 2;
     return withUnit(fmt::format("{:.{}f}", value, decimals), unit);
 }
 

@@ -405,7 +405,7 @@ void HandMeasures::State::takeForces(const Sample& s) {
 Measured HandMeasures::State::protectedImpulse(Measured m) const {
     const auto index =
         m.of.tissue.empty() ? std::size_t{0} : static_cast<std::size_t>(cases::tissueByName(m.of.tissue));
-    const Impulse on = m.kind == kStanding    ? standing.on(m.of.tissue.empty() ? kOnProtected : static_cast<int>(index))
+    const Impulse on = m.kind == kStanding   ? standing.on(m.of.tissue.empty() ? kOnProtected : static_cast<int>(index))
                        : m.of.tissue.empty() ? onProtected
                                              : onTissue[index];
     m.value = on.newtonSeconds;

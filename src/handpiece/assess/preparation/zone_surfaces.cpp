@@ -59,7 +59,8 @@ geometry::TriangleMesh surfaceIn(const F& f, const Tooth& tooth, const core::Box
 template <class F>
 geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole, const core::Box& box, double finestMm,
                                  const core::Progress& progress) {
-    return surfaceIn(f, [&whole](const Vec3& p) { return whole.signedDistance(p); }, box, finestMm, progress);
+    return surfaceIn(
+        f, [&whole](const Vec3& p) { return whole.signedDistance(p); }, box, finestMm, progress);
 }
 
 }  // namespace

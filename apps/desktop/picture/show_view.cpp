@@ -4,8 +4,8 @@
 namespace handpiece::desktop {
 namespace {
 
-/// So near, a millimetre is some fifty pixels of a school's screen.
-constexpr double kEyeMm = 17.0;
+/// So near, a millimetre is some forty pixels of a school's screen.
+constexpr double kEyeMm = 20.0;
 /// Shares of the directions that are mixed: from where one worked, along the path of draw, and against the side on
 /// which the place lies.
 constexpr double kDraw = 0.6, kAside = 0.5;

@@ -11247,8 +11247,8 @@ lingual: %4</source>
         <translation>-</translation>
     </message>
     <message>
-        <source>%1 (asked: %2)</source>
-        <translation>%1（%2）</translation>
+        <source>%1: %2 (asked: %3)</source>
+        <translation>%1：%2（求められる値：%3）</translation>
     </message>
 </context>
 </TS>

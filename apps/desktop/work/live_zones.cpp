@@ -45,31 +45,46 @@ void LiveZones::count() {
     if (!watched_ || job_ || (removedMm3_ == countedMm3_ && isSure_)) return;
     isSure_ = removedMm3_ == countedMm3_;
     countedMm3_ = removedMm3_;
-    struct Counted {
-        LiveShares shares;
-        std::vector<course::LiveValue> values;
-        qint64 tookMs = 0;
-    };
-    const auto now = std::make_shared<Counted>();
-    job_ = std::make_unique<Job>(QString(), [now, watched = watched_](const core::Progress&) {
-        rt::stepBack();
-        QElapsedTimer clock;
-        clock.start();
-        if (!watched->laid)
-            watched->laid = std::make_shared<const preparation::Laid>(
-                preparation::layOn(watched->task->toothCase, *watched->task->preparation));
-        now->shares = course::liveShares(*watched->laid->zones, *watched->tooth);
-        if (watched->rubric)
-            now->values = course::liveValues(*watched->task, *watched->rubric, *watched->laid, *watched->tooth);
-        now->tookMs = clock.elapsed();
-    });
+    const auto shares = std::make_shared<LiveShares>();
+    run(
+        [shares](Watched& watched) {
+            if (!watched.laid)
+                watched.laid = std::make_shared<const preparation::Laid>(
+                    preparation::layOn(watched.task->toothCase, *watched.task->preparation));
+            *shares = course::liveShares(*watched.laid->zones, *watched.tooth);
+        },
+        [this, shares] {
+            emit counted(*shares);
+            if (watched_ && watched_->rubric) value();
+        });
+}
+
+/// The numbers take longer than the shares, which do not wait for them.
+void LiveZones::value() {
+    const auto values = std::make_shared<std::vector<course::LiveValue>>();
+    run(
+        [values](Watched& watched) {
+            *values = course::liveValues(*watched.task, *watched.rubric, *watched.laid, *watched.tooth);
+        },
+        [this, values] { emit valued(*values); });
+}
+
+void LiveZones::run(std::function<void(Watched&)> work, std::function<void()> done) {
+    const auto tookMs = std::make_shared<qint64>(0);
+    job_ =
+        std::make_unique<Job>(QString(), [work = std::move(work), tookMs, watched = watched_](const core::Progress&) {
+            rt::stepBack();
+            QElapsedTimer clock;
+            clock.start();
+            work(*watched);
+            *tookMs = clock.elapsed();
+        });
     const auto end = [this] { job_.release()->deleteLater(); };
-    connect(job_.get(), &Job::done, this, [this, end, now, hasValues = watched_->rubric != nullptr] {
+    connect(job_.get(), &Job::done, this, [this, end, tookMs, done = std::move(done)] {
         end();
         // At most half of the time.
-        timer_.setInterval(std::max<int>(kPauseMs, static_cast<int>(now->tookMs)));
-        emit counted(now->shares);
-        if (hasValues) emit valued(now->values);
+        timer_.setInterval(std::max<int>(kPauseMs, static_cast<int>(*tookMs)));
+        done();
     });
     connect(job_.get(), &Job::cancelled, this, end);
     // The preparation does not lie on this tooth, which finishing tells: there is nothing to count.

@@ -6,6 +6,7 @@
 
 #include <QObject>
 #include <QTimer>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -40,6 +41,9 @@ class LiveZones : public QObject {
   private:
     struct Watched;
     void count();
+    void value();
+    /// `work` beside everything else, then `done` here.
+    void run(std::function<void(Watched&)> work, std::function<void()> done);
 
     std::shared_ptr<Watched> watched_;
     double removedMm3_ = 0.0, countedMm3_ = -1.0;

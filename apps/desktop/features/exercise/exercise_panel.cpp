@@ -41,10 +41,7 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     ending->addWidget(finish_, 1);
     column->addLayout(ending);
     connect(finish_, &QPushButton::clicked, this, &ExercisePanel::finishRequested);
-    instructions_ = text("exerciseInstructions", tr("What to do"));
-    locked_ = note({}, this, "exerciseLocked");
-    locked_->setTextFormat(Qt::PlainText);
-    column->addWidget(locked_);
+    // In sight while one cuts: the panel may be low.
     live_ = new QWidget(this);
     auto* live = new QVBoxLayout(live_);
     live->setContentsMargins(0, 0, 0, 0);
@@ -59,6 +56,10 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     card_ = new LiveCard(live_);
     live->addWidget(card_);
     column->addWidget(live_);
+    instructions_ = text("exerciseInstructions", tr("What to do"));
+    locked_ = note({}, this, "exerciseLocked");
+    locked_->setTextFormat(Qt::PlainText);
+    column->addWidget(locked_);
     undo_ = note(tr("Undo takes back the whole stroke, with what it did to gingiva and adjacent teeth. How often you "
                     "undo is kept with the work."),
                  this, "exerciseUndo");

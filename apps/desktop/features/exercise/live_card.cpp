@@ -20,13 +20,15 @@ LiveCard::LiveCard(QWidget* parent) : QWidget(parent), grid_(new QGridLayout(thi
 }
 
 void LiveCard::setValues(const std::vector<course::LiveValue>& values, const rubric::Rubric& rubric) {
-    constexpr std::size_t kColumns = 3;
+    constexpr std::size_t kColumns = 2;
     while (cells_.size() < kColumns * values.size()) {
         auto* cell = new QLabel(this);
         cell->setTextFormat(Qt::PlainText);
         const int at = static_cast<int>(cells_.size());
-        cell->setWordWrap(at % 3 == 1);
-        grid_->addWidget(cell, at / 3, at % 3, at % 3 == 2 ? Qt::AlignRight | Qt::AlignTop : Qt::AlignTop);
+        const bool isSign = at % static_cast<int>(kColumns) == 0;
+        cell->setWordWrap(!isSign);
+        if (!isSign) cell->setMinimumWidth(60);
+        grid_->addWidget(cell, at / static_cast<int>(kColumns), isSign ? 0 : 1, Qt::AlignTop);
         cells_.push_back(cell);
     }
     for (QLabel* cell : cells_)
@@ -45,14 +47,14 @@ void LiveCard::setValues(const std::vector<course::LiveValue>& values, const rub
         const QString title = titleOf(rubric, v.criterion);
         const QString asked = QString::fromStdString(report::wantedText(v.wanted, v.unit));
         const QString is = v.value ? QString::fromStdString(report::amountText(*v.value, v.unit)) : tr("-");
-        const QString words[kColumns] = {sign, title, tr("%1 (asked: %2)").arg(is, asked)};
+        const QString words[kColumns] = {sign, tr("%1: %2 (asked: %3)").arg(title, is, asked)};
         for (std::size_t k = 0; k < kColumns; ++k) {
             QLabel* cell = cells_[kColumns * i + k];
             cell->setText(words[k]);
             cell->setToolTip(tip);
             cell->show();
         }
-        said << title + QStringLiteral(": ") + words[2] + QStringLiteral(", ") + tip;
+        said << words[1] + QStringLiteral(", ") + tip;
     }
     setAccessibleDescription(said.join(QLatin1Char('\n')));
     setVisible(!values.empty());

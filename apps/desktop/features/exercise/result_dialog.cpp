@@ -29,7 +29,7 @@
 namespace handpiece::desktop {
 namespace {
 
-enum Column { criterion, value, asked, points, why, columnCount };
+enum Column { criterion, value, wished, points, because, columnCount };
 
 /// The first that leads somewhere; null: none does.
 template <class Judged>
@@ -105,8 +105,8 @@ QWidget* ResultDialog::makeResult() {
     table_->setHorizontalHeaderLabels(
         {tr("What was judged"), tr("Yours"), tr("Asked"), tr("Points"), tr("Why not all points")});
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    for (const Column column : {criterion, why})
-        table_->horizontalHeader()->setSectionResizeMode(column, QHeaderView::Stretch);
+    for (const Column stretched : {criterion, because})
+        table_->horizontalHeader()->setSectionResizeMode(stretched, QHeaderView::Stretch);
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -448,7 +448,7 @@ void ResultDialog::fillTable() {
         name->setData(Qt::UserRole, row.at != nullptr);
         if (row.at != nullptr) name->setForeground(palette().link());
         put(value, row.value, row.exact);
-        put(asked, row.asked);
+        put(wished, row.asked);
         QString given = row.points.isEmpty() ? tr("shown only") : row.points;
         for (const marking::ReturnedMarks& marks : returned_)
             for (const marking::ReturnedMarks::Change& change : marks.changes)
@@ -456,7 +456,7 @@ void ResultDialog::fillTable() {
                     given += QLatin1Char('\n') + tr("%1: %2").arg(QString::fromStdString(marks.marker),
                                                                   pointsWords(*change.points, change.maxPoints));
         put(points, given);
-        put(why, row.why, row.advice);
+        put(because, row.why, row.advice);
     }
 }
 

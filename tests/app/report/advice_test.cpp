@@ -41,7 +41,7 @@ const Said kSaid[] = {
     {"undercut-depth", "", "", "Undercut.*too much", "", "アンダーカット.*大きい"},
     {"margin-width", "", "too narrow.*once more", "too wide", "狭い", "広い"},
     {"margin-continuity", "", "missing", "", "ない所", ""},
-    {"margin-height", "", "too low.*stop higher", "too high.*down", "低く", "高い"},
+    {"margin-height", "", "too low.*stop higher", "too high.*down", "mm 低く", "mm 高い"},
     {"remaining-dentine", "", "too little dentine", "more dentine", "足りない", "厚い"},
     {"pulp-exposed", "", "", "The pulp was opened", "", "露髄した"},
     {"gouge-depth", "", "", "deeper than allowed", "", "深く削った"},

@@ -90,7 +90,8 @@ Files filesOf(const ScoreOptions& o, const assessment::Work& work, const assessm
     report::AssessmentPictures pictures;
     if (!o.noPictures) {
         studies::ProgressBar bar("pictures");
-        pictures = report::assessmentPictures(task, work.teeth, work.state, result.assessment, {}, bar.listener());
+        pictures =
+            report::assessmentPictures(task, work.teeth, work.state, result.assessment, judged, {}, bar.listener());
         bar.finish();
     }
     for (const report::AssessmentPictures::View& view : pictures.views) {

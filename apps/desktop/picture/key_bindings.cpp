@@ -117,7 +117,7 @@ const std::vector<ActionInfo>& actionInfos() {
          Takes::keys},
         {Action::faster, "faster", QT_TRANSLATE_NOOP("KeyBindings", "More speed"), Group::cutting, Takes::keys},
         {Action::slower, "slower", QT_TRANSLATE_NOOP("KeyBindings", "Less speed"), Group::cutting, Takes::keys},
-        {Action::previousBur, "previous-bur", QT_TRANSLATE_NOOP("KeyBindings", "Bur before"), Group::cutting,
+        {Action::previousBur, "previous-bur", QT_TRANSLATE_NOOP("KeyBindings", "Previous bur"), Group::cutting,
          Takes::keys},
         {Action::nextBur, "next-bur", QT_TRANSLATE_NOOP("KeyBindings", "Next bur"), Group::cutting, Takes::keys},
         {Action::viewOcclusal, "view-occlusal", QT_TRANSLATE_NOOP("KeyBindings", "Occlusal"), Group::eye, Takes::keys},

@@ -455,6 +455,27 @@ void landmarks(QPainter& p, const Area& area) {
     p.restore();
 }
 
+/// What is said of the marked place: beside the ring, towards the side that has more room, never over it.
+void markWords(QPainter& p, const Area& area, const QPointF& at, double ringRadius) {
+    const double most = std::min(340.0, 0.45 * area.box.width());
+    const bool isRight = at.x() < area.box.center().x();
+    const double room = isRight ? area.box.right() - at.x() : at.x() - area.box.left();
+    const double gap = ringRadius + 14.0;
+    const QFontMetricsF metrics(p.font());
+    const QRectF text = metrics.boundingRect(QRectF(0, 0, std::max(80.0, std::min(most, room - gap - 24.0)), 1e4),
+                                             Qt::AlignLeft | Qt::TextWordWrap, area.state.markWords);
+    QRectF box(0, 0, text.width() + 18.0, text.height() + 12.0);
+    box.moveTop(std::clamp(at.y() - box.height() / 2.0, area.box.top() + 4.0,
+                           std::max(area.box.top() + 4.0, area.box.bottom() - box.height() - 4.0)));
+    box.moveLeft(isRight ? at.x() + gap : at.x() - gap - box.width());
+    haloLine(p, {isRight ? box.left() : box.right(), at.y()}, {at.x() + (isRight ? 1 : -1) * ringRadius, at.y()},
+             kLine);
+    area.labels.push_back(box);
+    paintPanel(p, box);
+    p.setPen(kText);
+    p.drawText(box.adjusted(9, 6, -9, -6), Qt::AlignLeft | Qt::TextWordWrap, area.state.markWords);
+}
+
 /// Whole where it is seen, dashed and paler where the tooth hides it.
 void mark(QPainter& p, const Area& area) {
     const auto at = area.state.markMm ? area.at(*area.state.markMm) : std::nullopt;
@@ -471,6 +492,7 @@ void mark(QPainter& p, const Area& area) {
     p.drawEllipse(*at, kRadius, kRadius);
     p.restore();
     if (!isHidden) dot(p, *at, colour, 2.5);
+    if (!area.state.markWords.isEmpty()) markWords(p, area, *at, kRadius);
 }
 
 void onTooth(QPainter& p, const Area& area) {

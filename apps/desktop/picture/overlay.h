@@ -45,6 +45,7 @@ struct OverlayState {
     measure::PulpLimits pulpLimits;
     std::vector<ShownLandmark> landmarks;
     std::optional<core::Vec3> markMm;      ///< of what a result tells
+    QString markWords;                     ///< beside it, in lines; empty: the ring alone
     bool isMarkHidden = false;             ///< by the tooth
     std::optional<LandmarkPoint> grabbed;  ///< of them, that is moved
     std::optional<SectionPlace> section;

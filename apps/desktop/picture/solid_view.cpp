@@ -77,6 +77,7 @@ struct SolidView::Worker {
     Wish wish;
     std::uint64_t drawn = 0;
     QImage ready;
+    std::uint64_t readyOf = 0;  ///< the wish that it was drawn for
     QString missing;
     std::thread thread;
 };
@@ -125,6 +126,7 @@ void SolidView::Worker::run() {
             const std::lock_guard lock(mutex);
             ready = QImage(image.rgba.data(), image.width, image.height, 4 * image.width, QImage::Format_RGBX8888)
                         .convertToFormat(QImage::Format_RGB32);
+            readyOf = now.number;
             if (!refining) drawn = now.number;
         } catch (const std::exception& error) {
             refining = false;
@@ -213,6 +215,15 @@ void SolidView::makeTissueButtons() {
         connect(button, &QToolButton::toggled, this, [this, tissue](bool on) { setTissueShown(tissue, on); });
         tissues_->insertWidget(at++, button);
     }
+}
+
+void SolidView::forgetPicture() {
+    {
+        const std::lock_guard lock(worker_->mutex);
+        forgotten_ = worker_->wish.number;
+    }
+    picture_ = {};
+    update();
 }
 
 void SolidView::setCaption(const QString& caption, bool isStale) {
@@ -372,7 +383,7 @@ void SolidView::wish() {
 void SolidView::take() {
     {
         const std::lock_guard lock(worker_->mutex);
-        picture_ = worker_->ready;
+        if (worker_->readyOf > forgotten_) picture_ = worker_->ready;
         missing_ = worker_->missing;
     }
     update();

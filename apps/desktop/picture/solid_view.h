@@ -5,6 +5,7 @@
 
 #include <QImage>
 #include <QWidget>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,6 +35,8 @@ class SolidView : public QWidget {
 
     /// Nothing to be seen: no parts. The eye stays where it is unless the size is quite another.
     void setParts(std::shared_ptr<const std::vector<cases::Part>> parts, const core::Box& bounds);
+    /// What is shown stands for something else by now: nothing is seen until the next is drawn.
+    void forgetPicture();
     /// A line about what is shown, above the picture ("Preview"); dimmed when it is no longer true.
     void setCaption(const QString& caption, bool isStale);
     [[nodiscard]] const QString& caption() const noexcept { return caption_; }
@@ -101,6 +104,7 @@ class SolidView : public QWidget {
     view::Camera camera_;
     view::Look look_;
     QImage picture_;
+    std::uint64_t forgotten_ = 0;  ///< pictures of wishes up to this one are of something else
     QString caption_, missing_, placeholder_;
     bool isStale_ = false, axesShown_ = false, placed_ = false;
     int buccalSign_ = 0;

@@ -362,6 +362,7 @@ OverlayState ViewWidget::State::overlay() const {
     if (!state.pressed) {
         state.landmarks = landmarks;
         state.markMm = markMm;
+        state.markWords = markWords;
         // In a replay the tooth grows and goes about it.
         state.isMarkHidden = markMm && isHidden(*markMm);
     }

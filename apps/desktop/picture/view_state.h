@@ -55,6 +55,7 @@ struct ViewWidget::State {
     bool mirrorView = false;
     std::vector<ShownLandmark> landmarks;
     std::optional<core::Vec3> markMm;
+    QString markWords;
     std::optional<LandmarkPoint> grabbed;
     std::vector<Measurement> measurements;
     std::optional<core::Vec3> calliperStartMm, pointerMm;

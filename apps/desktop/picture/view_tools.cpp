@@ -145,8 +145,9 @@ const std::vector<ShownLandmark>& ViewWidget::landmarks() const {
     return state_->landmarks;
 }
 
-void ViewWidget::setMark(std::optional<core::Vec3> placeMm) {
+void ViewWidget::setMark(std::optional<core::Vec3> placeMm, const QString& words) {
     state_->markMm = placeMm;
+    state_->markWords = words;
     update();
 }
 

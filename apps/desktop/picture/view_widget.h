@@ -105,8 +105,8 @@ class ViewWidget : public QWidget {
     /// That the keys move; none: they move nothing.
     void grabLandmark(std::optional<LandmarkPoint> at);
     [[nodiscard]] std::optional<LandmarkPoint> grabbedLandmark() const;
-    /// A ring about a place of the tooth, until another tooth; none: away with it.
-    void setMark(std::optional<core::Vec3> placeMm);
+    /// A ring about a place of the tooth with what is to be said of it, until another tooth; none: away with it.
+    void setMark(std::optional<core::Vec3> placeMm, const QString& words = {});
     /// From which thickness over the pulp on a reading is green, and under which it is red.
     void setPulpLimits(const measure::PulpLimits& limits);
     /// All that is written and drawn on the picture now.

@@ -639,6 +639,22 @@
         <source>Not in this exam.</source>
         <translation>この試験では使えません。</translation>
     </message>
+    <message>
+        <source>New exercise...</source>
+        <translation>新しい課題...</translation>
+    </message>
+    <message>
+        <source>For teachers: set a task, from its tooth to how it is judged</source>
+        <translation>教員用：歯の選択から評価の方法まで、課題を作ります</translation>
+    </message>
+    <message>
+        <source>Edit exercise...</source>
+        <translation>課題を編集...</translation>
+    </message>
+    <message>
+        <source>For teachers: change an exercise that was saved</source>
+        <translation>教員用：保存した課題を変更します</translation>
+    </message>
 </context>
 <context>
     <name>BurPicture</name>
@@ -1008,10 +1024,6 @@
         <translation>回転を遅く</translation>
     </message>
     <message>
-        <source>Bur before</source>
-        <translation>前のバー</translation>
-    </message>
-    <message>
         <source>Next bur</source>
         <translation>次のバー</translation>
     </message>
@@ -1138,6 +1150,10 @@
     <message>
         <source>Depth of one pass</source>
         <translation>1回の切削の深さ</translation>
+    </message>
+    <message>
+        <source>Previous bur</source>
+        <translation>前のバー</translation>
     </message>
 </context>
 <context>
@@ -3831,6 +3847,10 @@
     <message>
         <source>Nothing beside the target</source>
         <translation>目標の外は切削なし</translation>
+    </message>
+    <message>
+        <source>Undo takes back the whole stroke, with what it did to gingiva and adjacent teeth. How often you undo is kept with the work.</source>
+        <translation>「元に戻す」は、歯肉や隣在歯に与えた傷も含めてストローク全体を取り消します。取り消した回数は作業とともに残ります。</translation>
     </message>
 </context>
 <context>
@@ -9019,6 +9039,54 @@ lingual: %4</source>
         <source>%1 of %2</source>
         <translation>%1 / %2</translation>
     </message>
+    <message>
+        <source>even (%1)</source>
+        <translation>なめらか（%1）</translation>
+    </message>
+    <message>
+        <source>fairly even (%1)</source>
+        <translation>ほぼなめらか（%1）</translation>
+    </message>
+    <message>
+        <source>uneven (%1)</source>
+        <translation>ぎこちない（%1）</translation>
+    </message>
+    <message>
+        <source>%1:%2 min</source>
+        <translation>%1 分 %2 秒</translation>
+    </message>
+    <message>
+        <source>not judged with this device</source>
+        <translation>この機器では採点しない</translation>
+    </message>
+    <message>
+        <source>critical error</source>
+        <translation>重大な誤り</translation>
+    </message>
+    <message>
+        <source>at the border, within ± %1: the teacher decides</source>
+        <translation>境界上（± %1 以内）：教員が判断</translation>
+    </message>
+    <message>
+        <source>%1 points times %2: the work is not finished</source>
+        <translation>%1 点 × %2：未完成のため</translation>
+    </message>
+    <message>
+        <source>not measured</source>
+        <translation>測定できず</translation>
+    </message>
+    <message>
+        <source>not counted</source>
+        <translation>数えない</translation>
+    </message>
+    <message>
+        <source>%1: %2</source>
+        <translation>%1：%2</translation>
+    </message>
+    <message>
+        <source>%1: %2, asked: %3</source>
+        <translation>%1：%2、求められる値：%3</translation>
+    </message>
 </context>
 <context>
     <name>handpiece::desktop::ExercisesDialog</name>
@@ -9155,12 +9223,20 @@ lingual: %4</source>
         <translation>再確認</translation>
     </message>
     <message>
-        <source>%1 (due)</source>
-        <translation>%1（再確認）</translation>
-    </message>
-    <message>
         <source>Due once more, without helps: %1</source>
         <translation>補助なしの再確認：%1</translation>
+    </message>
+    <message>
+        <source>Next step</source>
+        <translation>次の課題</translation>
+    </message>
+    <message>
+        <source>The first in the list that is not passed yet</source>
+        <translation>一覧のうち、まだ合格していない最初の課題</translation>
+    </message>
+    <message>
+        <source>Next step: %1</source>
+        <translation>次の課題：%1</translation>
     </message>
 </context>
 <context>
@@ -9174,10 +9250,6 @@ lingual: %4</source>
         <translation>見本を削っています</translation>
     </message>
     <message>
-        <source>Best so far: %1 % in %2 attempts</source>
-        <translation>これまでの最高点：%1 %（%2 回）</translation>
-    </message>
-    <message>
         <source>Save the result</source>
         <translation>結果を保存</translation>
     </message>
@@ -9188,10 +9260,6 @@ lingual: %4</source>
     <message>
         <source>Writing the page</source>
         <translation>ページを書き出しています</translation>
-    </message>
-    <message>
-        <source>Attempts so far: %1; of none could all be measured.</source>
-        <translation>これまでの試行：%1 回。すべてを測定できたものはありません。</translation>
     </message>
     <message>
         <source>Opening the result</source>
@@ -9403,24 +9471,8 @@ lingual: %4</source>
         <translation>場所のある行をクリックすると、視点をそこに向け、起きた数秒を再生します</translation>
     </message>
     <message>
-        <source>Criterion</source>
-        <translation>項目</translation>
-    </message>
-    <message>
-        <source>Measured</source>
-        <translation>測定値</translation>
-    </message>
-    <message>
-        <source>Band</source>
-        <translation>評価</translation>
-    </message>
-    <message>
         <source>Points</source>
         <translation>点</translation>
-    </message>
-    <message>
-        <source>Where</source>
-        <translation>場所</translation>
     </message>
     <message>
         <source>Your tooth</source>
@@ -9499,36 +9551,8 @@ lingual: %4</source>
         <translation>視点をそこに向けます</translation>
     </message>
     <message>
-        <source>not measured</source>
-        <translation>測定できず</translation>
-    </message>
-    <message>
-        <source>not with this device</source>
-        <translation>このデバイスでは対象外</translation>
-    </message>
-    <message>
-        <source>void</source>
-        <translation>無効</translation>
-    </message>
-    <message>
-        <source>borderline</source>
-        <translation>境界</translation>
-    </message>
-    <message>
-        <source>%1 (borderline)</source>
-        <translation>%1（境界）</translation>
-    </message>
-    <message>
         <source>shown only</source>
         <translation>表示のみ</translation>
-    </message>
-    <message>
-        <source>%1 s</source>
-        <translation>%1 秒</translation>
-    </message>
-    <message>
-        <source>place</source>
-        <translation>場所</translation>
     </message>
     <message>
         <source>The ideal: drag to turn it</source>
@@ -9537,10 +9561,6 @@ lingual: %4</source>
     <message>
         <source>Your tooth: drag to turn it</source>
         <translation>自分の歯：ドラッグで回転</translation>
-    </message>
-    <message>
-        <source>not counted</source>
-        <translation>数えない</translation>
     </message>
     <message>
         <source>Time</source>
@@ -9618,24 +9638,41 @@ lingual: %4</source>
         <source>(by another rubric, %1)</source>
         <translation>（別の評価基準 %1 による）</translation>
     </message>
-</context>
-<context>
-    <name>Commands</name>
     <message>
-        <source>New exercise...</source>
-        <translation>新しい課題...</translation>
+        <source>What was judged</source>
+        <translation>採点項目</translation>
     </message>
     <message>
-        <source>For teachers: set a task, from its tooth to how it is judged</source>
-        <translation>教員用：歯の選択から評価の方法まで、課題を作ります</translation>
+        <source>Yours</source>
+        <translation>自分の値</translation>
     </message>
     <message>
-        <source>Edit exercise...</source>
-        <translation>課題を編集...</translation>
+        <source>Asked</source>
+        <translation>求められる値</translation>
     </message>
     <message>
-        <source>For teachers: change an exercise that was saved</source>
-        <translation>教員用：保存した課題を変更します</translation>
+        <source>Why not all points</source>
+        <translation>満点でない理由</translation>
+    </message>
+    <message>
+        <source>Practise</source>
+        <translation>練習する</translation>
+    </message>
+    <message>
+        <source>Open the exercise that trains this: %1</source>
+        <translation>これを練習する課題を開きます：%1</translation>
+    </message>
+    <message>
+        <source>Most is still to be cut here.</source>
+        <translation>ここに最も多く残っています。</translation>
+    </message>
+    <message>
+        <source>asked: %1</source>
+        <translation>求められる値：%1</translation>
+    </message>
+    <message>
+        <source>A click shows where</source>
+        <translation>クリックすると場所を示します</translation>
     </message>
 </context>
 <context>
@@ -11202,6 +11239,56 @@ lingual: %4</source>
     <message>
         <source> mm</source>
         <translation> mm</translation>
+    </message>
+</context>
+<context>
+    <name>ExerciseSteps</name>
+    <message>
+        <source>%1 (%2 %)</source>
+        <translation>%1（%2 %）</translation>
+    </message>
+    <message>
+        <source>%1 (due)</source>
+        <translation>%1（再確認）</translation>
+    </message>
+    <message>
+        <source>Best so far: %1 %. Attempts: %2</source>
+        <translation>これまでの最高点：%1 %。回数：%2</translation>
+    </message>
+    <message>
+        <source>Attempts so far: %1; of none could all be measured.</source>
+        <translation>これまでの試行：%1 回。すべてを測定できたものはありません。</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::LiveCard</name>
+    <message>
+        <source>What will be judged, as it is now</source>
+        <translation>採点される項目の現在の値</translation>
+    </message>
+    <message>
+        <source>not to be measured yet</source>
+        <translation>まだ測定できません</translation>
+    </message>
+    <message>
+        <source>as it was asked</source>
+        <translation>求められる範囲内</translation>
+    </message>
+    <message>
+        <source>less than was asked</source>
+        <translation>求められる値より小さい</translation>
+    </message>
+    <message>
+        <source>more than was asked</source>
+        <translation>求められる値より大きい</translation>
+    </message>
+    <message>
+        <source>-</source>
+        <translation>-</translation>
+    </message>
+    <message>
+        <source>%1: %2 (asked: %3)</source>
+        <translation>%1：%2（求められる値：%3）</translation>
     </message>
 </context>
 </TS>

@@ -6,9 +6,12 @@
 
 #include <QObject>
 #include <QTimer>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "desktop/framework/job.h"
+#include "handpiece/app/course/live_card.h"
 #include "handpiece/app/course/live_shares.h"
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/assess/task/task.h"
@@ -23,17 +26,24 @@ class LiveZones : public QObject {
   public:
     explicit LiveZones(QObject* parent = nullptr);
     /// Of this tooth, from now on. A task without a preparation is none.
-    void watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<simulation::LiveTooth> tooth);
+    /// `rubric`: its numbers are taken too; null: shares alone.
+    void watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<simulation::LiveTooth> tooth,
+               std::shared_ptr<const rubric::Rubric> rubric = nullptr);
     void stop();
     /// So much is gone of the tooth now [mm3]: nothing is counted again where it is as before.
     void tell(double removedMm3) { removedMm3_ = removedMm3; }
 
   signals:
     void counted(const handpiece::desktop::LiveShares& shares);
+    /// After it, where a rubric was given.
+    void valued(const std::vector<handpiece::course::LiveValue>& values);
 
   private:
     struct Watched;
     void count();
+    void value();
+    /// `work` beside everything else, then `done` here.
+    void run(std::function<void(Watched&)> work, std::function<void()> done);
 
     std::shared_ptr<Watched> watched_;
     double removedMm3_ = 0.0, countedMm3_ = -1.0;

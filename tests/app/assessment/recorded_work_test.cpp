@@ -141,6 +141,36 @@ TEST(Recording, TellsOfTheHand) {
         HasSubstr("does not tell"));
 }
 
+/// Three strokes of a second, each with a load on the gingiva: the second cuts tooth as well, and is taken back.
+TEST(Recording, WhatAStrokeDidToTheGingivaGoesWithItWhenItIsTakenBack) {
+    const test::TemporaryFolder folder;
+    const auto strokes = [](double t, messages::HapticSample& s) {
+        s.pedal = std::fmod(t, 1.0) < 0.8 ? 1.0 : 0.0;
+        s.depthMm = -1;
+        s.forceN = {0, 0, 0};
+        // One, two and four newtons for half a second each.
+        if (std::fmod(t, 1.0) < 0.5) {
+            s.flags = messages::kPressesGingiva;
+            s.forceN = {0, 0, t < 1 ? 1.0 : t < 2 ? 2.0 : 4.0};
+        }
+        // 1 mm3 in the first stroke, another in the second, which comes back at 1.95 s.
+        const double enamel = t < 1 ? t : t < 1.8 ? 1.0 + (t - 1) : t < 1.95 ? 1.8 : 1.0;
+        s.removedMm3[static_cast<std::size_t>(cases::Tissue::enamel)] = enamel;
+        if (t >= 1.95 && t < 1.96) s.flags |= messages::kRestoring;
+    };
+    const std::vector<session::Event> events{
+        {800, "stroke end", "{}"}, {1800, "stroke end", "{}"}, {1950, "undo", ""}, {2800, "stroke end", "{}"}};
+    const Recording session = recorded(folder.path() / "a.h5", 2.9, strokes, events);
+    measures::Selection gum;
+    gum.tissue = "gum";
+    const std::vector<Request> asked{{"impulse-not-undone", gum}, {"impulse-on-protected", gum}, {"undos"}};
+    const std::vector<Measured> told = readRecord(std::span(&session, 1), {}, 0.05, asked, {});
+    EXPECT_NEAR(*told[0].value, 0.5 + 2.0, 0.01) << "the first, and the third, which took no tooth";
+    EXPECT_NEAR(*told[1].value, 0.5 + 1.0 + 2.0, 0.01) << "what rubrics of before ask for is as it was";
+    EXPECT_EQ(*told[2].value, 1.0);
+    EXPECT_NEAR(*told[0].evidence.at(0).timeS, 0.0, 0.002);
+}
+
 tasks::Task blockTask() {
     tasks::Task task;
     task.id = "block";

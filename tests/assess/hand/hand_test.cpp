@@ -256,6 +256,58 @@ TEST(Hand, TellsWhatItDidWhen) {
     EXPECT_DOUBLE_EQ(*on.evidence.at(1).forceN, 0.5);
 }
 
+TEST(Hand, AStrokeThatIsTakenBackTakesItsHarmWithIt) {
+    using Step = HandMeasures::Step;
+    measures::Selection gum;
+    gum.tissue = "gum";
+    HandMeasures hand(std::vector<Request>{{"impulse-not-undone", gum}, {"impulse-on-protected", gum}, {"undos"}}, {});
+    double nowS = 0.0;
+    // A second with so much on the gingiva; `removes`: it also cuts tooth, which makes it a step of the history.
+    const auto stroke = [&](double gumN, bool removes) {
+        for (int i = 0; i < 1000; ++i) {
+            Sample s = cutting(gumN);
+            s.timeS = nowS += 1e-3;
+            s.lastsS = 1e-3;
+            s.depthMm = -1.0;
+            s.pressesGingiva = gumN > 0.0;
+            s.isCutting = s.hasRemoved = removes;
+            hand.take(s);
+        }
+        hand.endStroke();
+    };
+    const auto stands = [&](double truth, const char* when) {
+        const std::vector<Measured> all = hand.measured();
+        EXPECT_NEAR(*all[0].value, truth, 1e-6) << when;
+        if (truth > 0.0) {
+            EXPECT_FALSE(all[0].evidence.empty()) << when;
+        } else {
+            EXPECT_TRUE(all[0].evidence.empty()) << when;
+        }
+    };
+    stroke(0.125, true);
+    stroke(0.5, true);
+    stands(0.625, "nothing was undone");
+    hand.takeStep(nowS, Step::undo);
+    stands(0.125, "the second goes whole");
+    hand.takeStep(nowS, Step::redo);
+    stands(0.625, "and comes back");
+    hand.takeStep(nowS, Step::undo);
+    stroke(0.25, false);
+    stands(0.375, "a stroke that cut no tooth");
+    hand.takeStep(nowS, Step::undo);
+    stands(0.0, "goes back with the step before it");
+    stroke(1.0, true);
+    hand.takeStep(nowS, Step::redo);
+    stands(1.0, "what was undone before a new stroke cannot come back");
+    hand.takeStep(nowS, Step::reset);
+    stands(0.0, "a whole tooth in whole gingiva");
+    hand.takeStep(nowS, Step::undo);
+    stands(1.0, "a reset is a step too");
+    const std::vector<Measured> all = hand.measured();
+    EXPECT_NEAR(*all[1].value, 0.125 + 0.5 + 0.25 + 1.0, 1e-6) << "the measure of before counts all, as it did";
+    EXPECT_EQ(*all[2].value, 7.0) << "and how often is told";
+}
+
 TEST(Hand, OfALoopThatCutsEveryOtherTickDrillsAllTheTime) {
     const auto at = [](double t) {
         Sample s = cutting();
@@ -329,7 +381,7 @@ TEST(Hand, TellsHowOneWorkedOnlyWhereItIsTold) {
             if (tells && i == 0) hand.takeWay({9, false, true, false});
             if (tells && i == 2500) hand.takeWay({11, true, true, true});
             if (tells && i == 9500) hand.takeWay({12, true, false, true});
-            if (i == 5000) hand.goOn(1), hand.takeBur(0, "330", nullptr), hand.takeStep(0);
+            if (i == 5000) hand.goOn(1), hand.takeBur(0, "330", nullptr), hand.takeStep(0, HandMeasures::Step::undo);
             if (i == 6000) hand.takeBur(1.0, "245", nullptr);
             Sample s = cutting();
             s.timeS = (i % 5000) * 1e-3;

@@ -100,6 +100,7 @@ void DrillFeature::addDocks() {
 void DrillFeature::connectCommands() {
     on(commands_[Command::undo], [this] {
         simulator_.undo();
+        view_.clearBlood();  // the stroke goes back with what it did to the gingiva
         tellStep(WelcomeStrip::Step::undo);
     });
     on(commands_[Command::redo], [this] { simulator_.redo(); });

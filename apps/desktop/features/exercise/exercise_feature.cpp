@@ -14,7 +14,9 @@
 
 #include "desktop/features/exercise/exercise_panel.h"
 #include "desktop/framework/helps.h"
+#include "desktop/work/documents.h"
 #include "desktop/work/simulator.h"
+#include "handpiece/app/course/finished_work.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::desktop {
@@ -108,6 +110,9 @@ ExerciseFeature::ExerciseFeature(const FeatureContext& context)
         if (simulator_.isReviewing()) simulator_.open(fs::path(simulator_.reviewed().attemptFile));
     });
     connect(&live_, &LiveZones::counted, panel_, [this](const LiveShares& shares) { panel_->setShares(&shares); });
+    connect(&live_, &LiveZones::valued, panel_, [this](const std::vector<course::LiveValue>& values) {
+        if (rubric_) panel_->setValues(values, *rubric_);
+    });
     connectCommands();
     showCode();
     window_.openers.push_back([this](const QString& path) { return open(path); });
@@ -153,11 +158,23 @@ void ExerciseFeature::showDocument() {
     text.canFinish = simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() &&
                      !simulator_.task()->rubric.empty() && !simulator_.exam();
     const bool isAtWork = simulator_.mode() == Simulator::Mode::liveSession;
-    text.hasLiveBar = isAtWork && simulator_.task() && simulator_.task()->hasLiveBar && simulator_.task()->preparation;
+    const std::shared_ptr<const tasks::Task>& task = simulator_.task();
+    const exercise::Permissions may = simulator_.permissions();
+    // By oneself, and in an exam, nobody tells.
+    text.hasLiveBar =
+        isAtWork && task && task->hasLiveBar && task->preparation && !simulator_.exam() && !isUnaided(*task);
+    text.saysWhatUndoDoes = text.canFinish && !may.locks(exercise::Operation::undo);
     panel_->setText(text);
     panel_->setShares(nullptr);
+    panel_->setValues({}, {});
+    rubric_.reset();
+    if (text.hasLiveBar && !may.locks(exercise::Operation::depthReadout)) try {
+            rubric_ = std::make_shared<const rubric::Rubric>(course::rubricOf(*task));
+        } catch (const core::Error&) {
+            rubric_.reset();  // it cannot be judged, which finishing tells
+        }
     if (text.hasLiveBar)
-        live_.watch(simulator_.task(), simulator_.tooth());
+        live_.watch(task, simulator_.tooth(), rubric_);
     else
         live_.stop();
     showTick();

@@ -56,6 +56,7 @@ class ExerciseFeature : public Feature {
     QLabel* code_;
     bool isWanted_ = false;
     LiveZones live_{this};
+    std::shared_ptr<const rubric::Rubric> rubric_;  ///< by which the live numbers are told; null: none are
 };
 
 }  // namespace handpiece::desktop

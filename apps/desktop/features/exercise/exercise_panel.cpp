@@ -8,6 +8,7 @@
 #include <QPushButton>
 #include <QVBoxLayout>
 
+#include "desktop/features/exercise/live_card.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
 
@@ -40,10 +41,7 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     ending->addWidget(finish_, 1);
     column->addLayout(ending);
     connect(finish_, &QPushButton::clicked, this, &ExercisePanel::finishRequested);
-    instructions_ = text("exerciseInstructions", tr("What to do"));
-    locked_ = note({}, this, "exerciseLocked");
-    locked_->setTextFormat(Qt::PlainText);
-    column->addWidget(locked_);
+    // In sight while one cuts: the panel may be low.
     live_ = new QWidget(this);
     auto* live = new QVBoxLayout(live_);
     live->setContentsMargins(0, 0, 0, 0);
@@ -55,7 +53,17 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     live->addWidget(target_);
     beyond_ = note({}, live_, "exerciseBeyond");
     live->addWidget(beyond_);
+    card_ = new LiveCard(live_);
+    live->addWidget(card_);
     column->addWidget(live_);
+    instructions_ = text("exerciseInstructions", tr("What to do"));
+    locked_ = note({}, this, "exerciseLocked");
+    locked_->setTextFormat(Qt::PlainText);
+    column->addWidget(locked_);
+    undo_ = note(tr("Undo takes back the whole stroke, with what it did to gingiva and adjacent teeth. How often you "
+                    "undo is kept with the work."),
+                 this, "exerciseUndo");
+    column->addWidget(undo_);
     review_ = new QWidget(this);
     recordings_ = new QVBoxLayout(review_);
     recordings_->setContentsMargins(0, 0, 0, 0);
@@ -84,6 +92,7 @@ void ExercisePanel::setText(const ExerciseText& text) {
                                         : tr("Not in this exercise: %1").arg(text.locked.join(QStringLiteral("; "))));
     finish_->setVisible(text.canFinish);
     live_->setVisible(text.hasLiveBar);
+    undo_->setVisible(text.saysWhatUndoDoes);
     showReview(text.review);
 }
 
@@ -115,6 +124,10 @@ void ExercisePanel::setShares(const LiveShares* shares) {
         line(tr("Protected, and cut: %1 mm³"), shares->protectedMm3);
     }
     beyond_->setText(lines.isEmpty() ? tr("Nothing beside the target") : lines.join(QLatin1Char('\n')));
+}
+
+void ExercisePanel::setValues(const std::vector<course::LiveValue>& values, const rubric::Rubric& rubric) {
+    card_->setValues(values, rubric);
 }
 
 void ExercisePanel::showReview(const ExerciseText::Review& review) {

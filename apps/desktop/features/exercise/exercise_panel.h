@@ -18,12 +18,15 @@ class QVBoxLayout;
 
 namespace handpiece::desktop {
 
+class LiveCard;
+
 /// Plain data for the panel, in the words of the case.
 struct ExerciseText {
     QString title, instructions;
     QStringList locked;      ///< what is withheld, in words
     bool canFinish = false;  ///< it is judged, and at work
     bool hasLiveBar = false;
+    bool saysWhatUndoDoes = false;  ///< it is judged, and may be undone
     struct Review {
         bool isOn = false;
         QString student;  ///< may be empty
@@ -45,6 +48,8 @@ class ExercisePanel : public QWidget {
     void setClock(std::optional<double> workedS, double limitS = 0.0);
     /// What is gone of the zones; null: nothing is counted yet.
     void setShares(const LiveShares* shares);
+    /// The numbers that will be judged; empty: none is shown.
+    void setValues(const std::vector<course::LiveValue>& values, const rubric::Rubric& rubric);
 
   signals:
     /// By its place in ExerciseText::Review::recordings.
@@ -55,8 +60,9 @@ class ExercisePanel : public QWidget {
   private:
     void showReview(const ExerciseText::Review& review);
 
-    QLabel *title_, *instructions_, *locked_, *clock_, *beyond_, *student_, *missing_;
+    QLabel *title_, *instructions_, *locked_, *clock_, *beyond_, *undo_, *student_, *missing_;
     QProgressBar* target_;
+    LiveCard* card_;
     QWidget* live_;
     int shownS_ = -2;
     QPushButton* finish_;

@@ -58,6 +58,12 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     view_->setPlaceholder({});
     auto* left = new QVBoxLayout;
     left->addWidget(list_, 1);
+    next_ = named(new QPushButton(this), "exercisesNextStep", tr("Next step"),
+                  tr("The first in the list that is not passed yet"));
+    next_->setFlat(true);
+    next_->hide();
+    left->addWidget(next_);
+    connect(next_, &QPushButton::clicked, this, [this] { list_->setCurrentRow(nextRow_); });
     where_ = note({}, this, "exercisesWhere");
     left->addWidget(where_);
     auto* folder = named(new QPushButton(tr("Folder..."), this), "exercisesFolder", tr("Folder..."),
@@ -164,13 +170,20 @@ void ExercisesDialog::list() {
 
 /// In the list by a word behind the title: whoever looks for something to do finds it, and nobody is pressed.
 void ExercisesDialog::showDue() {
+    nextRow_ = -1;  // the first of the program's own, which come in their order, that is not passed yet
     for (int row = 0; row < list_->count(); ++row) {
         const Entry& entry = entries_[static_cast<std::size_t>(row)];
         QString title = inThisLanguage(entry.title);
         if (title.isEmpty()) title = toQString(entry.path.filename());
         QListWidgetItem* item = list_->item(row);
-        item->setText(entry.id.empty() || dueOf(entry.id).empty() ? title : tr("%1 (due)").arg(title));
+        const std::optional<Reached> reached = entry.id.empty() ? std::nullopt : reachedAt(entry.id);
+        item->setText(entryWords(title, reached, !entry.id.empty() && !dueOf(entry.id).empty()));
+        if (entry.isShipped && nextRow_ < 0 && !(reached && reached->isPassed)) {
+            nextRow_ = row;
+            next_->setText(tr("Next step: %1").arg(title));
+        }
     }
+    next_->setVisible(nextRow_ >= 0);
 }
 
 void ExercisesDialog::chooseAfter(const std::string& id) {
@@ -178,6 +191,12 @@ void ExercisesDialog::chooseAfter(const std::string& id) {
     const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.id == id; });
     const auto next = at == entries_.end() ? 0 : static_cast<std::size_t>(at - entries_.begin() + 1) % entries_.size();
     list_->setCurrentRow(static_cast<int>(next));
+}
+
+void ExercisesDialog::chooseExercise(const std::string& id) {
+    if (entries_.empty()) list();
+    const auto at = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.id == id; });
+    if (at != entries_.end()) list_->setCurrentRow(static_cast<int>(at - entries_.begin()));
 }
 
 void ExercisesDialog::giveUp() {
@@ -309,8 +328,8 @@ void ExercisesDialog::showTask() {
         if (const auto help = helpOf(name)) locked << helpWords(*help);
     if (!locked.isEmpty()) about << tr("Not in this exercise: %1").arg(locked.join(QStringLiteral(", ")));
     show(about_, about.join(QStringLiteral(" · ")));
-    const QString best = bestOf(task_->id);
-    show(best_, best.isEmpty() ? tr("Not tried yet.") : best);
+    const std::optional<Reached> reached = reachedAt(task_->id);
+    show(best_, reached ? bestWords(*reached) : tr("Not tried yet."));
     show(due_, {});
     try {
         const rubric::Rubric rubric = task_->rubric.empty() ? rubric::Rubric{} : course::rubricOf(*task_);

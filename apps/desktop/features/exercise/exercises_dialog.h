@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "desktop/features/exercise/exercise_steps.h"
 #include "desktop/framework/job.h"
 #include "handpiece/app/course/finished_work.h"
 
@@ -34,14 +35,18 @@ class ExercisesDialog : public QDialog {
 
     /// Of a school or one's own; empty: only those of the program.
     void setFolder(const std::filesystem::path& folder);
-    /// In a line: what was reached so far at the exercise of this id; empty: nothing yet.
-    std::function<QString(const std::string& id)> bestOf = [](const std::string&) { return QString(); };
+    /// What was reached so far at the exercise of this id; none: nothing yet.
+    std::function<std::optional<Reached>(const std::string& id)> reachedAt = [](const std::string&) {
+        return std::optional<Reached>();
+    };
     /// Criteria that are to be shown once more at it, by their ids; empty: nothing is due.
     std::function<std::vector<std::string>(const std::string& id)> dueOf = [](const std::string&) {
         return std::vector<std::string>();
     };
     /// Shows the one after this in the list; the first after the last, and of one that is not in it.
     void chooseAfter(const std::string& id);
+    /// Shows that one, where it is in the list.
+    void chooseExercise(const std::string& id);
     /// All of the chosen one is there.
     [[nodiscard]] bool isReady() const noexcept { return !job_ && task_ != nullptr; }
     /// Of the chosen one, for the result; null while it is not there.
@@ -79,7 +84,8 @@ class ExercisesDialog : public QDialog {
     QLabel *where_, *title_, *about_, *best_, *due_, *words_, *asks_, *note_;
     SolidView* view_;
     QProgressBar* progress_;
-    QPushButton *begin_, *retest_;
+    QPushButton *begin_, *retest_, *next_;
+    int nextRow_ = -1;
 };
 
 }  // namespace handpiece::desktop

@@ -6,12 +6,15 @@
 #include <QFileInfo>
 #include <QLocale>
 #include <QPushButton>
+#include <numeric>
 #include <utility>
 
 #include "desktop/features/exercise/assessment_words.h"
 #include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/progress_dialog.h"
+#include "desktop/picture/show_view.h"
+#include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/assessment/assessment_json.h"
@@ -47,7 +50,7 @@ constexpr CommandOf<Command> kCommands[] = {
      in(Shelf::view, 26), exercise::Operation::elsewhere},
 };
 // A way into the seconds in which something happened, and out of them.
-constexpr double kBeforeS = 1.5, kAfterS = 1.5, kEyeMm = 26.0;
+constexpr double kBeforeS = 1.5, kAfterS = 1.5;
 
 }  // namespace
 
@@ -84,7 +87,13 @@ PracticeFeature::PracticeFeature(const FeatureContext& context, ExerciseFeature&
         return simulator_.mode() == Simulator::Mode::liveSession && simulator_.task() && simulator_.task()->preparation;
     });
     connect(commands_[Command::zones], &QAction::toggled, this, &PracticeFeature::showZones);
-    connect(&glass_, &ZoneGlass::changed, this, [this] { view_.setGlass(glass_.surfaces()); });
+    const auto showGlass = [this] {
+        std::vector<view::GlassSurface> all = glass_.surfaces();
+        all.insert(all.end(), work_.surfaces().begin(), work_.surfaces().end());
+        view_.setGlass(std::move(all));
+    };
+    connect(&glass_, &ZoneGlass::changed, this, showGlass);
+    connect(&work_, &WorkGlass::changed, this, showGlass);
     connect(&glass_, &ZoneGlass::refused, &window_, &MainWindow::showProblem);
     commands.enableWhile(commands_[Command::result], [this] { return done_ != nullptr; });
     connect(&simulator_, &Simulator::finished, this, &PracticeFeature::take);
@@ -109,7 +118,7 @@ void PracticeFeature::openDialogs() {
         const auto at = due_.find(id);
         return at == due_.end() ? std::vector<std::string>() : at->second;
     };
-    exercises_->bestOf = [this](const std::string& id) { return bestOf(id); };
+    exercises_->reachedAt = [this](const std::string& id) { return reachedAt(id); };
     if (const QString folder = settings_.value(QStringLiteral("exercises/folder")).toString(); !folder.isEmpty())
         exercises_->setFolder(toPath(folder));
     else if (!simulator_.casesFolder().empty())
@@ -135,6 +144,12 @@ void PracticeFeature::openDialogs() {
     connect(progress_, &ProgressDialog::returnedRequested, this, [this] {
         const QString file = window_.questions.open(tr("Marks from your teacher"), tr("Marks (*.json);;All files (*)"));
         if (!file.isEmpty()) takeReturned(toPath(file));
+    });
+    connect(result_, &ResultDialog::practiseRequested, this, [this](const QString& id) {
+        readDue();
+        exercises_->show();
+        exercises_->raise();
+        exercises_->chooseExercise(id.toStdString());
     });
     connect(result_, &ResultDialog::nextRequested, this, [this] {
         readDue();
@@ -187,8 +202,8 @@ void PracticeFeature::showDocument() {
     if (simulator_.mode() != Simulator::Mode::replay) back_->hide();
     const bool isGiven =
         isAtWork && task->preparation && !simulator_.permissions().locks(exercise::Operation::transparency);
-    // A block has its figure printed on it; on a tooth one finds one's own way first.
-    commands_[Command::zones]->setChecked(isGiven && task->preparation->preparation.starts_with("block-"));
+    // What is asked is seen from the beginning; by oneself it is not, nor where an exercise locks it.
+    commands_[Command::zones]->setChecked(isGiven && !isUnaided(*task) && !simulator_.exam());
     showZones();
     if (!isAtWork || simulator_.exam()) return;
     if (school::Store* kept = store()) {
@@ -207,13 +222,21 @@ void PracticeFeature::showDocument() {
 
 void PracticeFeature::showZones() {
     const auto& task = simulator_.task();
-    if (commands_[Command::zones]->isChecked() && task && task->preparation)
+    glass_.setZones({preparation::SeenZone::protectedZone});
+    if (commands_[Command::zones]->isChecked() && task && task->preparation) {
         glass_.show(std::shared_ptr<const cases::Case>(task, &task->toothCase), *task->preparation);
-    else
+        work_.watch(task, simulator_.tooth());
+    } else {
         glass_.hide();
+        work_.stop();
+    }
 }
 
 void PracticeFeature::showTick() {
+    if (work_.isWatching()) {
+        const auto& removed = simulator_.sample().removedMm3;
+        work_.tell(std::accumulate(std::begin(removed), std::end(removed), 0.0));
+    }
     if (!stopAtS_ || simulator_.mode() != Simulator::Mode::replay || !simulator_.replay()) return;
     const ReplayNow now = simulator_.replay()->now();
     if (now.seeking || now.timeS < *stopAtS_) return;
@@ -433,16 +456,16 @@ fs::path PracticeFeature::placeOf(const tasks::Task& task) {
     return place;
 }
 
+/// From where one worked: as the exercise begins, else from above.
 void PracticeFeature::turnTo(const core::Vec3& placeMm) {
-    view::Camera eye = view_.camera();
-    const core::Vec3 draw = done_->work.draw;
-    // A little from the side of the place: walls are seen that hide from straight above.
-    core::Vec3 aside = placeMm - draw * placeMm.dot(draw);
-    if (aside.norm() > 1e-6) aside.normalize();
-    eye.targetMm = placeMm;
-    eye.eyeMm = placeMm + kEyeMm * (draw - 0.35 * aside).normalized();
-    if (eye.forward().cross(eye.up).norm() < 0.2) eye.up = core::Vec3::UnitY();
-    view_.setCamera(eye);
+    const report::Bearings& bearings = done_->work.bearings;
+    const core::Box& box = simulator_.tooth()->model().outer.bounds();
+    view::Camera worked = view::standardView(view::StandardView::occlusal, box, bearings.buccalSign,
+                                             {std::max(1, view_.width()), std::max(1, view_.height())});
+    if (const auto& exercise = done_->work.task->toothCase.exercise; exercise && exercise->view)
+        worked = lookingAs(worked, *exercise->view);
+    const core::Vec3 middle = bearings.asked.isEmpty() ? box.centre() : bearings.asked.centre();
+    view_.setCamera(lookingAtPlace(placeMm, bearings.draw, middle, worked));
 }
 
 /// On a small screen the result lies over what it shows.
@@ -455,30 +478,32 @@ void PracticeFeature::makeRoom() {
     back_->show();
 }
 
-void PracticeFeature::showEvidence(const measures::Evidence& evidence) {
+void PracticeFeature::showEvidence(const measures::Evidence& evidence, const QString& words) {
     if (!done_) return;
     // Of a chain the one in which it happened.
     const std::vector<assessment::Recording>& chain = done_->work.work.recordings;
     const fs::path session =
         evidence.timeS && evidence.session < chain.size() ? chain[evidence.session].path : done_->work.session;
-    if (!session.empty()) show(session, evidence, false);  // else it is no longer kept, which the result tells
+    if (!session.empty()) show(session, evidence, words, false);  // else it is no longer kept, which the result tells
 }
 
 /// Opened where another lies open.
-void PracticeFeature::show(const fs::path& session, const measures::Evidence& evidence, bool playsWhole) {
+void PracticeFeature::show(const fs::path& session, const measures::Evidence& evidence, const QString& words,
+                           bool playsWhole) {
     if (simulator_.mode() != Simulator::Mode::replay || simulator_.document().caseFile != session) {
-        window_.whenMayLeave([this, session, evidence, playsWhole] {
+        window_.whenMayLeave([this, session, evidence, words, playsWhole] {
             simulator_.open(session);
-            simulator_.whenFree([this, session, evidence, playsWhole] {
+            simulator_.whenFree([this, session, evidence, words, playsWhole] {
                 if (simulator_.mode() == Simulator::Mode::replay && simulator_.document().caseFile == session)
-                    show(session, evidence, playsWhole);
+                    show(session, evidence, words, playsWhole);
             });
         });
         return;
     }
     makeRoom();
     if (evidence.placeMm) turnTo(*evidence.placeMm);
-    view_.setMark(evidence.placeMm);
+    view_.setMark(evidence.placeMm, words);
+    showIdealGlass();
     const double endS = simulator_.replay()->durationS();
     if (evidence.timeS) {
         simulator_.seek(std::max(0.0, *evidence.timeS - kBeforeS));
@@ -489,6 +514,14 @@ void PracticeFeature::show(const fs::path& session, const measures::Evidence& ev
         simulator_.seek(playsWhole ? 0.0 : endS);
         simulator_.play(playsWhole);
     }
+}
+
+/// The ideal over one's own cut: what still stands in it is seen through it, what is gone beyond it lies outside.
+void PracticeFeature::showIdealGlass() {
+    const std::shared_ptr<const tasks::Task>& task = done_->work.task;
+    if (!task->preparation || task->toothCase.parts.empty()) return;
+    glass_.setZones({preparation::SeenZone::target});
+    glass_.show(std::shared_ptr<const cases::Case>(task, &task->toothCase), *task->preparation);
 }
 
 /// When the teacher's bur cut at this place, where it did.
@@ -512,7 +545,7 @@ void PracticeFeature::showTeacherWork(const std::optional<measures::Evidence>& a
         this);
     connect(findingTeacher_, &Job::done, this, [this, there, session, folder = teacherFolder_] {
         std::exchange(findingTeacher_, nullptr)->deleteLater();
-        if (folder == teacherFolder_) show(session, *there, true);
+        if (folder == teacherFolder_) show(session, *there, {}, true);
     });
     connect(findingTeacher_, &Job::failed, this, [this](const Problem& problem) {
         std::exchange(findingTeacher_, nullptr)->deleteLater();
@@ -521,26 +554,15 @@ void PracticeFeature::showTeacherWork(const std::optional<measures::Evidence>& a
     findingTeacher_->start();
 }
 
-QString PracticeFeature::bestOf(const std::string& id) {
+std::optional<Reached> PracticeFeature::reachedAt(const std::string& id) {
     school::Store* kept = store();
     if (!kept) return {};
-    std::vector<school::Attempt> of;
     try {
-        of = kept->attempts(id);
+        return reachedIn(kept->attempts(id));
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
     }
-    if (of.empty()) return {};
-    const school::Attempt latest = of.back();
-    std::optional<double> best;
-    int count = 0;
-    for (const school::Attempt& attempt : of)
-        if (areComparable(attempt, latest)) {
-            if (attempt.isWhole()) best = std::max(best.value_or(0.0), attempt.percent());
-            ++count;
-        }
-    return best ? tr("Best so far: %1 % in %2 attempts").arg(QLocale().toString(*best, 'f', 0)).arg(count)
-                : tr("Attempts so far: %1; of none could all be measured.").arg(count);
+    return {};
 }
 
 void PracticeFeature::showProgress() {
@@ -585,8 +607,8 @@ void PracticeFeature::savePage() {
           [done = done_, path = toPath(file)](const core::Progress& progress) {
               const course::FinishedWork& work = done->work;
               const report::AssessmentPictures pictures =
-                  report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment, {},
-                                             core::part(progress, 0.0, 0.3));
+                  report::assessmentPictures(*work.task, work.work.teeth, work.work.state, work.result.assessment,
+                                             work.rubric, {}, core::part(progress, 0.0, 0.3));
               core::writeFile(path,
                               assessment::studentPage(work.work, work.result, *work.task, work.rubric, pictures, true,
                                                       core::part(progress, 0.3, 1.0)),

@@ -8,8 +8,10 @@
 #include <memory>
 #include <optional>
 
+#include "desktop/features/exercise/exercise_steps.h"
 #include "desktop/features/exercise/result_dialog.h"
 #include "desktop/framework/feature.h"
+#include "desktop/work/work_glass.h"
 #include "desktop/work/zone_glass.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/store.h"
@@ -44,8 +46,10 @@ class PracticeFeature : public Feature {
     void take(const Simulator::Finished& done);
     void keep();
     void keep(const OwnJudgement& own);
-    void showEvidence(const measures::Evidence& evidence);
-    void show(const std::filesystem::path& session, const measures::Evidence& evidence, bool playsWhole);
+    void showEvidence(const measures::Evidence& evidence, const QString& words);
+    void show(const std::filesystem::path& session, const measures::Evidence& evidence, const QString& words,
+              bool playsWhole);
+    void showIdealGlass();
     void showTeacherWork(const std::optional<measures::Evidence>& at);
     void turnTo(const core::Vec3& placeMm);
     void makeRoom();
@@ -54,7 +58,7 @@ class PracticeFeature : public Feature {
     void handIn();
     void takeReturned(const std::filesystem::path& file);
     void showProgress();
-    [[nodiscard]] QString bestOf(const std::string& id);
+    [[nodiscard]] std::optional<Reached> reachedAt(const std::string& id);
     void makeIdeal();
     [[nodiscard]] std::filesystem::path placeOf(const tasks::Task& task);
     void showZones();
@@ -74,6 +78,7 @@ class PracticeFeature : public Feature {
     Job* older_ = nullptr;                                 ///< a result of before, on its way
     std::map<std::string, std::vector<std::string>> due_;  ///< criteria by exercise
     ZoneGlass glass_;
+    WorkGlass work_;
     /// Of the exercise whose result is shown.
     std::shared_ptr<const std::vector<std::byte>> teacherWork_;
     std::shared_ptr<const core::PrivateFolder> teacherFolder_;  ///< in which it lies, once it is played

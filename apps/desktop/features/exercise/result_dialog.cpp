@@ -17,17 +17,19 @@
 #include <algorithm>
 
 #include "desktop/features/exercise/assessment_words.h"
+#include "desktop/features/exercise/result_rows.h"
 #include "desktop/picture/solid_view.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
+#include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
 
 namespace handpiece::desktop {
 namespace {
 
-enum Column { criterion, value, band, points, place, columnCount };
+enum Column { criterion, value, wished, points, because, columnCount };
 
 /// The first that leads somewhere; null: none does.
 template <class Judged>
@@ -51,7 +53,11 @@ ResultDialog::ResultDialog(QWidget* parent) : QDialog(parent), pages_(new QStack
 
 QWidget* ResultDialog::makeJudging() {
     auto* page = new QWidget;
-    auto* column = new QVBoxLayout(page);
+    auto* sides = new QHBoxLayout(page);
+    auto* column = new QVBoxLayout;
+    sides->addLayout(column, 3);
+    judged_ = new SolidView("judgeTooth", page);
+    sides->addWidget(judged_, 2);
     auto* asked = new QLabel(tr("Before you see the result: what do you think of your own work?"), page);
     asked->setWordWrap(true);
     asked->setFont(scaledFont(font(), 1.3, true));
@@ -96,9 +102,11 @@ QWidget* ResultDialog::makeResult() {
     table_ = named(new QTableWidget(page), "resultTable", tr("All that was judged"),
                    tr("A click on a row with a place turns the eye there and plays the seconds in which it happened"));
     table_->setColumnCount(columnCount);
-    table_->setHorizontalHeaderLabels({tr("Criterion"), tr("Measured"), tr("Band"), tr("Points"), tr("Where")});
+    table_->setHorizontalHeaderLabels(
+        {tr("What was judged"), tr("Yours"), tr("Asked"), tr("Points"), tr("Why not all points")});
     table_->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-    table_->horizontalHeader()->setSectionResizeMode(criterion, QHeaderView::Stretch);
+    for (const Column stretched : {criterion, because})
+        table_->horizontalHeader()->setSectionResizeMode(stretched, QHeaderView::Stretch);
     table_->verticalHeader()->hide();
     table_->verticalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
     table_->setEditTriggers(QAbstractItemView::NoEditTriggers);
@@ -107,7 +115,8 @@ QWidget* ResultDialog::makeResult() {
     left->addWidget(table_, 1);
     connect(table_, &QTableWidget::cellClicked, this, [this](int row, int) {
         const auto& all = done_->work.result.assessment.criteria;
-        if (const auto* e = evidenceOf(all[static_cast<std::size_t>(row)])) lookAt(*e);
+        const ResultRow chosen = resultRow(done_->work, all[static_cast<std::size_t>(row)]);
+        if (chosen.at != nullptr) lookAt(*chosen.at, placeWords(chosen));
     });
     comments_ = named(new QListWidget(page), "resultComments", tr("Your teacher's comments"),
                       tr("A click on a comment turns the eye to its place and plays its seconds"));
@@ -115,7 +124,7 @@ QWidget* ResultDialog::makeResult() {
     comments_->setWordWrap(true);
     left->addWidget(comments_);
     connect(comments_, &QListWidget::itemClicked, this, [this](const QListWidgetItem* item) {
-        if (const auto& there = saidOf_[static_cast<std::size_t>(comments_->row(item))]) lookAt(*there);
+        if (const auto& there = saidOf_[static_cast<std::size_t>(comments_->row(item))]) lookAt(*there, item->text());
     });
     proof_ = note({}, page, "resultProof");
     left->addWidget(proof_);
@@ -174,6 +183,8 @@ void ResultDialog::setResult(std::shared_ptr<const Simulator::Finished> done, co
     ideal_ = std::move(ideal);
     own_.reset();
     hasTooth_ = false;
+    for (SolidView* view : {tooth_, judged_})
+        view->forgetPicture();  // that of the result before would stand there until this one is drawn
     comments_->clear();
     saidOf_.clear();
     returned_.clear();
@@ -269,9 +280,9 @@ void ResultDialog::setHasTeacherWork(bool has) {
     teacherWork_->setVisible(has);
 }
 
-void ResultDialog::lookAt(const measures::Evidence& evidence) {
+void ResultDialog::lookAt(const measures::Evidence& evidence, const QString& words) {
     lookedAt_ = evidence;
-    emit evidenceChosen(evidence);
+    emit evidenceChosen(evidence, words);
 }
 
 void ResultDialog::setNote(const QString& words, bool isBusy) {
@@ -319,7 +330,7 @@ void ResultDialog::fill() {
     QStringList why;
     for (const score::CriticalError& error : a.critical)
         why << (error.borderline ? tr("Perhaps a critical error: %1") : tr("Critical error: %1"))
-                   .arg(titleOf(done_->work.rubric, error.criterion));
+                   .arg(criticalWords(done_->work, error));
     if (a.wholeScore > a.maxScore + 1e-9)
         why << tr("Criteria worth %1 of %2 points could not be measured.")
                    .arg(locale.toString(a.wholeScore - a.maxScore, 'f', 1), locale.toString(a.wholeScore, 'f', 1));
@@ -370,8 +381,8 @@ void ResultDialog::fillErrors() {
         errorRows_.push_back(heading(tr("What cost most"), this));
         errors_->addWidget(errorRows_.back());
     }
-    const auto add = [this](const QString& words, const QString& name, const measures::Evidence* e,
-                            const QString& show) {
+    const auto add = [this](const QString& words, const QString& name, const measures::Evidence* e, const QString& show,
+                            const QString& there, const std::string& exercise) {
         auto* row = new QWidget(this);
         auto* line = new QHBoxLayout(row);
         line->setContentsMargins(0, 0, 0, 0);
@@ -380,32 +391,43 @@ void ResultDialog::fillErrors() {
         label->setWordWrap(true);
         label->setObjectName(name);
         line->addWidget(label, 1);
-        if (e != nullptr) {
-            auto* button = named(new QPushButton(tr("Show"), row), "", tr("Show"),
-                                 e->timeS ? tr("Turn the eye there and play the seconds in which it happened")
-                                          : tr("Turn the eye there"));
-            button->setObjectName(show);
+        const auto push = [&](const QString& said, const QString& tip, const QString& object, auto wanted) {
+            auto* button = named(new QPushButton(said, row), "", said, tip);
+            button->setObjectName(object);
             line->addWidget(button);
-            connect(button, &QPushButton::clicked, this, [this, at = *e] { lookAt(at); });
-        }
+            connect(button, &QPushButton::clicked, this, wanted);
+        };
+        if (!exercise.empty())
+            push(tr("Practise"),
+                 tr("Open the exercise that trains this: %1")
+                     .arg(inThisLanguage(course::shippedExercise(exercise).exercise.title)),
+                 name + QStringLiteral("_practise"),
+                 [this, exercise] { emit practiseRequested(QString::fromStdString(exercise)); });
+        if (e != nullptr)
+            push(tr("Show"),
+                 e->timeS ? tr("Turn the eye there and play the seconds in which it happened")
+                          : tr("Turn the eye there"),
+                 show, [this, at = *e, there] { lookAt(at, there); });
         errors_->addWidget(row);
         errorRows_.push_back(row);
     };
-    if (isUndone)
-        add(QString::fromStdString(report::undoneWords(a)) + QLatin1Char(' ') +
-                tr("%1 points lost").arg(QLocale().toString(a.lostUndone(), 'f', 1)),
-            QStringLiteral("resultUndone"), evidenceOf(*a.completeness), QStringLiteral("resultShowUndone"));
+    if (isUndone) {
+        const QString words = QString::fromStdString(report::undoneWords(a)) + QLatin1Char(' ') +
+                              tr("%1 points lost").arg(QLocale().toString(a.lostUndone(), 'f', 1));
+        add(words, QStringLiteral("resultUndone"), evidenceOf(*a.completeness), QStringLiteral("resultShowUndone"),
+            words + QLatin1Char('\n') + tr("Most is still to be cut here."), {});
+    }
     for (std::size_t i = 0; i < std::min(order.size(), report::kFirstErrors); ++i) {
         const score::CriterionScore& c = a.criteria[order[i]];
-        QString words = titleOf(done_->work.rubric, c.id) + QStringLiteral(": ") + valueWords(c);
-        if (!c.band.empty()) words += QStringLiteral(", ") + bandTitle(done_->work.rubric, c.band);
+        const ResultRow row = resultRow(done_->work, c);
+        QString words = row.name + QStringLiteral(": ") + row.value;
+        if (!row.asked.isEmpty()) words += QStringLiteral(", ") + tr("asked: %1").arg(row.asked);
         if (c.points)
             words +=
                 QStringLiteral(", ") + tr("%1 points lost").arg(QLocale().toString(c.maxPoints - c.ownPoints, 'f', 1));
-        const QString drill = QString::fromStdString(report::drillFor(c.measure));
-        if (!drill.isEmpty()) words += QLatin1Char('\n') + drill;
-        add(words, QStringLiteral("resultError_%1").arg(i + 1), evidenceOf(c),
-            QStringLiteral("resultShow_%1").arg(i + 1));
+        if (!row.advice.isEmpty()) words += QLatin1Char('\n') + row.advice;
+        add(words, QStringLiteral("resultError_%1").arg(i + 1), row.at, QStringLiteral("resultShow_%1").arg(i + 1),
+            placeWords(row), row.exercise);
     }
 }
 
@@ -414,53 +436,49 @@ void ResultDialog::fillTable() {
     table_->setRowCount(static_cast<int>(all.size()));
     for (std::size_t i = 0; i < all.size(); ++i) {
         const score::CriterionScore& c = all[i];
+        const ResultRow row = resultRow(done_->work, c);
         const auto put = [&](Column column, const QString& words, const QString& tip = {}) {
             auto* item = new QTableWidgetItem(words);
             item->setToolTip(tip);
             if (column == value || column == points) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
             table_->setItem(static_cast<int>(i), column, item);
+            return item;
         };
-        put(criterion, titleOf(done_->work.rubric, c.id));
-        QString measured = valueWords(c);
-        if (c.standing == score::Standing::notMeasured) measured = tr("not measured");
-        if (c.standing == score::Standing::leftOut) measured = tr("not with this device");
-        if (c.standing == score::Standing::voided) measured = tr("void");
-        put(value, measured, saidWords(c.reason));
-        QString bands = c.band.empty() ? QString() : bandTitle(done_->work.rubric, c.band);
-        if (c.borderline) bands = bands.isEmpty() ? tr("borderline") : tr("%1 (borderline)").arg(bands);
-        put(band, bands);
-        QString given = c.points            ? pointsWords(*c.points, c.maxPoints)
-                        : c.maxPoints > 0.0 ? tr("not counted")
-                                            : tr("shown only");
+        QTableWidgetItem* name = put(criterion, row.name, row.at ? tr("A click shows where") : QString());
+        name->setData(Qt::UserRole, row.at != nullptr);
+        if (row.at != nullptr) name->setForeground(palette().link());
+        put(value, row.value, row.exact);
+        put(wished, row.asked);
+        QString given = row.points.isEmpty() ? tr("shown only") : row.points;
         for (const marking::ReturnedMarks& marks : returned_)
             for (const marking::ReturnedMarks::Change& change : marks.changes)
                 if (change.criterion == c.id && change.points)
                     given += QLatin1Char('\n') + tr("%1: %2").arg(QString::fromStdString(marks.marker),
                                                                   pointsWords(*change.points, change.maxPoints));
         put(points, given);
-        const measures::Evidence* e = evidenceOf(c);
-        put(place,
-            !e         ? QString()
-            : e->timeS ? tr("%1 s").arg(QLocale().toString(*e->timeS, 'f', 1))
-                       : tr("place"),
-            e ? saidWords(e->text) : QString());
+        put(because, row.why, row.advice);
     }
 }
 
-void ResultDialog::showTooth() {
-    const bool isIdeal = which_->checkedId() == 1 && ideal_;
-    const course::Parts& parts = isIdeal ? ideal_ : done_->work.own;
+/// As it was worked on: a cavity from palatal is not seen from labial.
+void ResultDialog::showIn(SolidView* view, const course::Parts& parts, bool isFirst) {
     core::Box box;
     if (parts)
         for (const cases::Part& part : *parts)
             for (const core::Vec3& v : part.mesh.vertices)
                 box.extend(v);
+    view->setParts(parts, box);
+    if (const auto& exercise = done_->work.task->toothCase.exercise; isFirst && exercise && exercise->view)
+        view->setCamera(lookingAs({}, *exercise->view));
+}
+
+void ResultDialog::showTooth() {
+    const bool isIdeal = which_->checkedId() == 1 && ideal_;
+    const course::Parts& parts = isIdeal ? ideal_ : done_->work.own;
     const bool isFirst = !hasTooth_ && parts;
     hasTooth_ = hasTooth_ || parts;
-    tooth_->setParts(parts, box);
-    // As it was worked on: a cavity from palatal is not seen from labial.
-    if (const auto& exercise = done_->work.task->toothCase.exercise; isFirst && exercise && exercise->view)
-        tooth_->setCamera(lookingAs({}, *exercise->view));
+    showIn(tooth_, parts, isFirst);
+    if (isAsking_) showIn(judged_, done_->work.own, isFirst);
     const QString caption = !parts    ? tr("Its recording is no longer kept: the tooth cannot be shown")
                             : isIdeal ? tr("The ideal: drag to turn it")
                                       : tr("Your tooth: drag to turn it");

@@ -54,8 +54,10 @@ class ResultDialog : public QDialog {
     void opened();
     /// Before the result is seen; not at all where nobody was asked.
     void judged(const handpiece::desktop::OwnJudgement& own);
-    /// To be looked at: a place, and the seconds in which it happened where they are known.
-    void evidenceChosen(const handpiece::measures::Evidence& evidence);
+    /// To be looked at: a place, and the seconds in which it happened where they are known; `words` are said there.
+    void evidenceChosen(const handpiece::measures::Evidence& evidence, const QString& words = {});
+    /// An exercise that comes along, which trains what cost points.
+    void practiseRequested(const QString& exercise);
     void againRequested();
     void nextRequested();
     void pageRequested();
@@ -77,8 +79,9 @@ class ResultDialog : public QDialog {
     void fillTable();
     void fillTeacher();
     void say(QString words, const std::string& author, std::optional<measures::Evidence> there);
-    void lookAt(const measures::Evidence& evidence);
+    void lookAt(const measures::Evidence& evidence, const QString& words = {});
     void showTooth();
+    void showIn(SolidView* view, const course::Parts& parts, bool isFirst);
     void showWhatCanBeWritten();
 
     std::shared_ptr<const Simulator::Finished> done_;
@@ -101,7 +104,7 @@ class ResultDialog : public QDialog {
     QVBoxLayout* errors_;
     std::vector<QWidget*> errorRows_;
     QTableWidget* table_;
-    SolidView* tooth_;
+    SolidView *tooth_, *judged_;  ///< beside the result, and beside the question before it
     QButtonGroup* which_;
 };
 

@@ -141,9 +141,13 @@ void MeasureFeature::connectTools() {
     on(commands_[Command::clear], [this] {
         view_.clearMeasurements();
         box_->setCalliper({});
+        probedDepthMm_.reset();
+        probedLeftMm_.reset();
     });
     connect(&view_, &ViewWidget::measured, this, [this](const Measurement& m) {
         if (m.kind == Measurement::Kind::distance) box_->setCalliper(m.valueMm);
+        if (m.kind == Measurement::Kind::depth) probedDepthMm_ = m.valueMm;
+        if (m.kind == Measurement::Kind::pulp) probedLeftMm_ = m.valueMm;
         window_.statusBar()->showMessage(m.text(), 8000);
     });
 }
@@ -194,6 +198,8 @@ void MeasureFeature::showDocument() {
         showLegend();
         takeSection();
         box_->setCalliper({});
+        probedDepthMm_.reset();
+        probedLeftMm_.reset();
         // The hand that holds this tooth's bur presses and stops as the panel says.
         view_.setLoad(box_->loadN());
         view_.setStop(box_->depthStopMm());
@@ -236,14 +242,22 @@ void MeasureFeature::takeSection() {
     box_->setSection(place.has_value(), orientationOf(shown.direction), shown.offsetMm);
 }
 
-/// Depth under the bur's tip while it touches; a tenth of a second is quick enough to read.
+/// Depth under the bur's tip while it touches, else what was measured last; a tenth of a second is quick enough to
+/// read.
 void MeasureFeature::showReadouts() {
     if (!window_.isVisible() || !simulator_.tooth()) return;
     const messages::HapticSample sample = view_.sample();
-    if (sample.tick == 0 || sample.depthMm < -0.05 || !view_.permissions().allows(exercise::Operation::depthReadout)) {
-        box_->setDepth({});
-        box_->setLeftOverPulp({});
+    const bool mayRead = view_.permissions().allows(exercise::Operation::depthReadout);
+    if (sample.tick == 0 || sample.depthMm < -0.05 || !mayRead) {
+        box_->setDepth(mayRead ? probedDepthMm_ : std::nullopt);
+        box_->setLeftOverPulp(mayRead ? probedLeftMm_ : std::nullopt,
+                              mayRead && probedLeftMm_ && *probedLeftMm_ <= 0.0);
         return;
+    }
+    // Who cuts on makes what was measured a thing of the past.
+    if (sample.pedal > 0.0) {
+        probedDepthMm_.reset();
+        probedLeftMm_.reset();
     }
     const core::Vec3 tip = core::toVec(sample.proxyPositionMm);
     struct Read {

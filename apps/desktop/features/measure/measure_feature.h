@@ -38,6 +38,7 @@ class MeasureFeature : public Feature {
     VolumeBars* volumes_;
     PlotPanel* plots_;
     QTimer readouts_;
+    std::optional<double> probedDepthMm_, probedLeftMm_;  ///< by a click, until one cuts on
 };
 
 }  // namespace handpiece::desktop

@@ -27,7 +27,8 @@ struct Listener {
     virtual void goOn(std::size_t session) = 0;
     virtual void takeBur(double atS, const simulation::SimulationSettings& settings) = 0;
     virtual void takeWay(const simulation::WorkingWay& way) = 0;
-    virtual void takeStep(double atS) = 0;
+    virtual void takeStep(double atS, hand::HandMeasures::Step step) = 0;
+    virtual void endStroke() = 0;
     virtual void take(double timeS, double lastsS, const Record& record) = 0;
 };
 
@@ -39,8 +40,11 @@ void tell(const Event& event, double rateHz, const std::string& where, std::size
           simulation::SimulationSettings& settings, Listener& to) {
     const double atS = static_cast<double>(event.tick) / rateHz;
     if (isNamed(event, EventName::workingWay)) return to.takeWay(simulation::workingWayFromJson(event.text));
-    if (isNamed(event, EventName::undo) || isNamed(event, EventName::redo) || isNamed(event, EventName::reset))
-        return to.takeStep(atS);
+    using Step = hand::HandMeasures::Step;
+    if (isNamed(event, EventName::undo)) return to.takeStep(atS, Step::undo);
+    if (isNamed(event, EventName::redo)) return to.takeStep(atS, Step::redo);
+    if (isNamed(event, EventName::reset)) return to.takeStep(atS, Step::reset);
+    if (isNamed(event, EventName::strokeEnd)) return to.endStroke();
     if (isNamed(event, EventName::burChange)) {
         (void)simulation::applyChange(event.text, settings, where);
         return to.takeBur(atS, settings);
@@ -99,14 +103,18 @@ core::Vec3 forceOf(const Record& record) {
 class HandListener : public Listener {
   public:
     explicit HandListener(hand::HandMeasures& hand) : hand_(hand) {}
-    void goOn(std::size_t session) override { hand_.goOn(session); }
+    void goOn(std::size_t session) override {
+        removedMm3_.reset();
+        hand_.goOn(session);
+    }
     void takeBur(double atS, const simulation::SimulationSettings& settings) override {
         if (settings.bur) hand_.takeBur(atS, settings.bur->name(), settings.bur.get());
     }
     void takeWay(const simulation::WorkingWay& way) override {
         hand_.takeWay({way.hour, way.mirrorOnly, way.fingerRest, way.depthStop});
     }
-    void takeStep(double atS) override { hand_.takeStep(atS); }
+    void takeStep(double atS, hand::HandMeasures::Step step) override { hand_.takeStep(atS, step); }
+    void endStroke() override { hand_.endStroke(); }
     void take(double timeS, double lastsS, const Record& record) override {
         hand::Sample s;
         s.timeS = timeS;
@@ -122,11 +130,18 @@ class HandListener : public Listener {
         s.isCutting = (record.flags & messages::kCutting) != 0;
         s.isStalled = (record.flags & messages::kStalled) != 0;
         s.pressesGingiva = (record.flags & (messages::kPressesGingiva | messages::kCutsGingiva)) != 0;
+        double removedMm3 = record.removedOthersMm3;
+        for (const double ofTissue : record.removedMm3)
+            removedMm3 += ofTissue;
+        // What comes back, or goes again, while a step is taken is no cut.
+        s.hasRemoved = (record.flags & messages::kRestoring) == 0 && removedMm3 > removedMm3_.value_or(removedMm3);
+        removedMm3_ = removedMm3;
         hand_.take(s);
     }
 
   private:
     hand::HandMeasures& hand_;
+    std::optional<double> removedMm3_;  ///< at the tick before
 };
 
 class TimeListener : public Listener {
@@ -138,7 +153,8 @@ class TimeListener : public Listener {
     void goOn(std::size_t session) override { session_ = session; }
     void takeBur(double /*atS*/, const simulation::SimulationSettings& settings) override { bur_ = settings.bur; }
     void takeWay(const simulation::WorkingWay& /*way*/) override {}
-    void takeStep(double /*atS*/) override {}
+    void takeStep(double /*atS*/, hand::HandMeasures::Step /*step*/) override {}
+    void endStroke() override {}
     void take(double timeS, double /*lastsS*/, const Record& record) override {
         if ((record.flags & messages::kCutting) == 0 || !bur_) return;
         core::Pose pose = poseOf(record);
@@ -194,9 +210,13 @@ struct Several : Listener {
         for (const auto& one : all)
             one->takeWay(way);
     }
-    void takeStep(double atS) override {
+    void takeStep(double atS, hand::HandMeasures::Step step) override {
         for (const auto& one : all)
-            one->takeStep(atS);
+            one->takeStep(atS, step);
+    }
+    void endStroke() override {
+        for (const auto& one : all)
+            one->endStroke();
     }
     void take(double timeS, double lastsS, const Record& record) override {
         for (const auto& one : all)

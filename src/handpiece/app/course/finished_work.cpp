@@ -55,7 +55,7 @@ void judge(FinishedWork& done, const core::Progress& progress) {
     const assessment::MeasuredWork measured =
         assessment::measureWork(done.work, *done.task, assessment::requestsOf(done.rubric), progress);
     done.result = assessment::judge(measured, done.rubric);
-    if (done.task->preparation) done.draw = measured.draw;
+    done.bearings = report::bearingsOf(*done.task);
 }
 }  // namespace
 
@@ -101,6 +101,7 @@ FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink>
                          std::all_of(chain.begin(), chain.end(),
                                      [](const assessment::ChainLink& link) { return core::isThere(link.in); });
     done.result = std::move(result);
+    done.bearings = report::bearingsOf(*done.task);
     if (!isWhole) return done;
     assessment::Work work = assessment::readChain(chain, *done.task, false, core::part(progress, 0.0, 0.6));
     if (work.sessionHashes != hashes ||
@@ -108,7 +109,6 @@ FinishedWork reopen(score::Result result, std::span<const assessment::ChainLink>
         return done;
     done.work = std::move(work);
     done.session = chain.back().in;
-    if (done.task->preparation) done.draw = preparation::layOn(done.task->toothCase, *done.task->preparation).draw;
     done.own = partsOf(done.work.teeth.front(), done.work.state, core::part(progress, 0.6, 1.0));
     return done;
 }

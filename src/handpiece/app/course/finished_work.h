@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/report/bearings.h"
 #include "handpiece/base/core/progress.h"
 
 namespace handpiece::course {
@@ -25,8 +26,7 @@ struct FinishedWork {
     rubric::Rubric rubric;
     score::Result result;
     Parts own;
-    core::Vec3 draw =
-        core::Vec3::UnitZ();  ///< the preparation's path of draw, out of the tooth: from there one sees into it
+    report::Bearings bearings;  ///< of its places; along its path of draw one sees into the tooth
 };
 
 /// Its rubric, sound. Throws core::Error, also for a task that has none.

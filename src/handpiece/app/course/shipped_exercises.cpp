@@ -96,10 +96,10 @@ const std::vector<Row>& rows() {
              "質は残すこと。"},
             {4,
              "46-class-i",
-             2,
+             3,
              "basic",
              30,
-             Stand::tooth,
+             Stand::arch,
              46,
              recipe("class-one", 0.2, {{"ridge_mm", 2.2}}),
              {"330", "245"},
@@ -152,7 +152,7 @@ const std::vector<Row>& rows() {
              "口蓋側から近心の接触点部を開窓する。唇側のエナメル質は残すこと。21 に触れず、歯髄に近づかないこと。"},
             {8,
              "33-class-v",
-             3,
+             4,
              "intermediate",
              25,
              Stand::arch,
@@ -286,6 +286,7 @@ tasks::Task taskOf(const Row& row, cases::Case toothCase) {
     task.drive = driveOf(row);
     task.preparation = row.recipe;
     task.ownJudgement = row.fdi != 0;
+    task.hasLiveBar = row.number != 0;
     task.rubric = rubric::shippedRubricText(row.id);
     task.toothCase = std::move(toothCase);
     task.toothCase.exercise = exerciseOf(row);

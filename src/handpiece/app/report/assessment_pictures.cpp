@@ -8,6 +8,7 @@
 #include <memory>
 #include <utility>
 
+#include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/section_outlines.h"
 #include "handpiece/app/simulation/live_tooth.h"
@@ -166,8 +167,8 @@ Vec3 middleOf(const tooth::ToothModel& whole, const tooth::StateDelta& own, cons
 }  // namespace
 
 AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teeth& teeth, const tooth::StateDelta& own,
-                                      const score::Assessment& assessment, const PictureSettings& settings,
-                                      const core::Progress& progress) {
+                                      const score::Assessment& assessment, const rubric::Rubric& rubric,
+                                      const PictureSettings& settings, const core::Progress& progress) {
     AssessmentPictures pictures;
     const std::shared_ptr<const tooth::ToothModel>& whole = teeth.front();
     std::optional<preparation::Laid> laid;
@@ -235,11 +236,10 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
                 const score::CriterionScore& criterion = assessment.criteria[i];
                 // Those of teeth beside lie in these, which are not drawn.
                 if (criterion.measure.rfind("adjacent-", 0) == 0) continue;
-                for (const measures::Evidence& e : criterion.evidence)
-                    if (e.placeMm) {
-                        pictures.places[criterion.id] = artist.place(*e.placeMm, draw);
-                        break;
-                    }
+                const rubric::Criterion* asks = rubric.criterion(criterion.id);
+                const Off off = asks && criterion.value ? offOf(wantedOf(*asks, rubric), *criterion.value) : Off::no;
+                if (const measures::Evidence* e = placeOf(criterion, off); e != nullptr && e->placeMm)
+                    pictures.places[criterion.id] = artist.place(*e->placeMm, draw);
             }
         }
         core::report(progress, 0.7);

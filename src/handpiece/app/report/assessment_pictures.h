@@ -17,7 +17,7 @@ struct PictureSettings {
 /// preparation. Without OpenGL it says so in `missing` and has no pictures. Throws core::Error when cancelled.
 [[nodiscard]] AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teeth& teeth,
                                                     const tooth::StateDelta& own, const score::Assessment& assessment,
-                                                    const PictureSettings& settings = {},
+                                                    const rubric::Rubric& rubric, const PictureSettings& settings = {},
                                                     const core::Progress& progress = {});
 
 }  // namespace handpiece::report

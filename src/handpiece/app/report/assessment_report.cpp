@@ -9,6 +9,7 @@
 #include <numeric>
 #include <utility>
 
+#include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/base/config/words.h"
@@ -27,35 +28,6 @@ double lossOf(const score::CriterionScore& c) {
     return c.points ? c.maxPoints - c.ownPoints : 0.0;
 }
 
-/// What is wanted: the values that have most points, else the best band.
-std::string wantedOf(const rubric::Criterion& c, const rubric::Rubric& rubric) {
-    const auto span = [&](std::optional<double> from, std::optional<double> to) {
-        if (from && to)
-            return *from == *to
-                       ? fmt::format("{:g} {}", *from, c.unit)
-                       : words()("assessment.from-to", fmt::format("{:g}", *from), fmt::format("{:g}", *to), c.unit);
-        if (from) return words()("assessment.at-least", fmt::format("{:g}", *from), c.unit);
-        if (to) return words()("assessment.at-most", fmt::format("{:g}", *to), c.unit);
-        return std::string();
-    };
-    if (!c.knots.empty()) {
-        double most = 0.0;
-        for (const rubric::Knot& k : c.knots)
-            most = std::max(most, k.points);
-        const auto isBest = [&](const rubric::Knot& k) { return k.points == most; };
-        const auto first = std::find_if(c.knots.begin(), c.knots.end(), isBest);
-        const auto last = std::find_if(c.knots.rbegin(), c.knots.rend(), isBest);
-        // Held at its ends: the first knot's points are those of all that is less.
-        return span(first == c.knots.begin() ? std::nullopt : std::optional(first->value),
-                    last == c.knots.rbegin() ? std::nullopt : std::optional(last->value));
-    }
-    for (const rubric::BandName& name : rubric.bands)
-        for (const rubric::Band& band : c.bands)
-            if (band.id == name.id) return span(band.from, band.to);
-    if (c.critical) return span(c.critical->below, c.critical->above);
-    return {};
-}
-
 class Page {
   public:
     Page(const score::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
@@ -66,6 +38,7 @@ class Page {
           rubric_(rubric),
           pictures_(pictures),
           review_(review),
+          bearings_(bearingsOf(task)),
           page_(words()("assessment.title", titleOf(task))) {}
 
     std::string text() {
@@ -135,12 +108,9 @@ class Page {
         if (a_.critical.empty()) return page_.paragraph(words()("assessment.no-critical"), Tone::good);
         page_.paragraph(words()("assessment.critical-apart"), Tone::note);
         for (const score::CriticalError& e : a_.critical) {
-            std::string line = titleOf(e.criterion);
-            if (const rubric::Criterion* c = criterion(e.criterion); c != nullptr && c->critical)
-                if (const auto text = cases::inLanguage(c->critical->title, words().language()); !text.empty())
-                    line = std::string(text);
+            std::string line = whatHappened(rubric_, e.criterion);
             for (const score::CriterionScore& s : a_.criteria)
-                if (s.id == e.criterion && s.value) line += ": " + valueOf(s);
+                if (s.id == e.criterion) line = whatHappened(rubric_, s, bearings_);
             page_.paragraph(e.borderline ? words()("assessment.may-be-critical", line) : line,
                             e.borderline ? Tone::note : Tone::bad);
         }
@@ -165,7 +135,7 @@ class Page {
             if (isShown) page_.begin(Group::columns);
             Facts facts{{words()("assessment.measured"), s.value ? valueOf(s) : said(s.reason)}};
             if (c != nullptr)
-                if (const std::string wanted = wantedOf(*c, rubric_); !wanted.empty())
+                if (const std::string wanted = wantedText(wantedOf(*c, rubric_), c->unit); !wanted.empty())
                     facts.emplace_back(c->isGraded() || !c->bands.empty() ? words()("assessment.wanted")
                                                                           : words()("assessment.allowed"),
                                        wanted);
@@ -194,7 +164,8 @@ class Page {
             if (c != nullptr)
                 if (const auto text = cases::inLanguage(c->words, words().language()); !text.empty())
                     page_.paragraph(text);
-            page_.paragraph(words()("assessment.practise", drillFor(s.measure)));
+            if (const Advice advice = adviceOf(s, rubric_, bearings_); !advice.words.empty())
+                page_.paragraph(words()("assessment.advice", advice.words));
             page_.end();
         }
     }
@@ -325,6 +296,7 @@ class Page {
     const rubric::Rubric& rubric_;
     const AssessmentPictures& pictures_;
     const ReviewMaker& review_;
+    const Bearings bearings_;
     HtmlReport page_;
 };
 

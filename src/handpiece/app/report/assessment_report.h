@@ -45,9 +45,6 @@ inline constexpr std::size_t kFirstErrors = 3;
 /// The graded criteria that cost points of their own or are critical errors, the dearest first (critical before all):
 /// indices into `assessment.criteria`.
 [[nodiscard]] std::vector<std::size_t> costliest(const score::Assessment& assessment);
-/// What to practise where this measure cost points, in the program's language; what the rubric itself says is in its
-/// words.
-[[nodiscard]] std::string drillFor(const std::string& measure);
 
 using ReviewMaker = std::function<Review(std::size_t mostBytes)>;
 

@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
+#include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/sentence_places.h"
 #include "handpiece/base/config/words.h"
@@ -25,50 +25,6 @@ std::string titleIn(const List& list, const std::string& id) {
                 return std::string(said);
     return id;
 }
-
-/// What to practise, by the beginning of the measure's name.
-constexpr std::array<std::pair<std::string_view, const char*>, 40> kDrills{{
-    {"floor-flatness", "drill.floor"},
-    {"floor-tilt", "drill.floor"},
-    {"floor-depth", "drill.depth"},
-    {"axial-depth", "drill.depth"},
-    {"reduction", "drill.reduction"},
-    {"roughness", "drill.roughness"},
-    {"isthmus", "drill.width"},
-    {"outline-extent", "drill.width"},
-    {"proximal-clearance", "drill.clearance"},
-    {"marginal-ridge-left", "drill.ridge"},
-    {"wall-angle", "drill.walls"},
-    {"wall-height", "drill.depth"},
-    {"occlusal-convergence", "drill.walls"},
-    {"cavosurface-angle", "drill.walls"},
-    {"undercut", "drill.undercut"},
-    {"margin-", "drill.margin"},
-    {"remaining-dentine", "drill.pulp"},
-    {"pulp-exposed", "drill.pulp"},
-    {"gouge-depth", "drill.access"},
-    {"orifices-reached", "drill.access"},
-    {"adjacent-", "drill.adjacent"},
-    {"caries-left", "drill.caries"},
-    {"unsupported-enamel", "drill.enamel"},
-    {"removed", "drill.outline"},
-    {"force", "drill.force"},
-    {"load-over-limit", "drill.force"},
-    {"impulse-on-protected", "drill.force"},
-    {"speed-under-load", "drill.force"},
-    {"stalls", "drill.force"},
-    {"smoothness", "drill.hand"},
-    {"path-length", "drill.hand"},
-    {"tilt", "drill.tilt"},
-    {"mirror-share", "drill.mirror"},
-    {"views", "drill.mirror"},
-    {"time", "drill.time"},
-    {"drill-time", "drill.time"},
-    {"idle-time", "drill.time"},
-    {"strokes", "drill.time"},
-    {"bur-changes", "drill.time"},
-    {"", "drill.other"},
-}};
 
 /// What measures say in English, under names that other languages have too. What is not among them stays as it is.
 constexpr const char* kSaid[] = {
@@ -124,6 +80,21 @@ constexpr const char* kSaid[] = {
     "said.kappa-linear",
     "said.as-one",
     "said.by-chance",
+    "said.least-here",
+    "said.most-here",
+    "said.first",
+    "said.most-load",
+    "said.least-smooth",
+    "said.chamber-cut",
+    "said.caries-here",
+    "said.no-finish-line",
+    "said.outermost",
+    "said.stalled",
+    "said.most-tilted",
+    "said.slowest",
+    "said.taken-back",
+    "said.over-limit",
+    "said.nearest-beside",
 };
 
 /// Why work was refused, or another score was found, as the books keep it: {} stands for what differs.
@@ -201,12 +172,6 @@ std::string said(const std::string& english) {
     return english;
 }
 
-std::string drillFor(const std::string& measure) {
-    for (const auto& [beginning, id] : kDrills)
-        if (measure.rfind(beginning, 0) == 0) return words().text(id);
-    return words().text("drill.other");
-}
-
 std::string criterionTitle(const rubric::Rubric& rubric, const std::string& id) {
     return titleIn(rubric.criteria, id);
 }
@@ -229,7 +194,7 @@ std::string whyOf(const score::Assessment& a, const rubric::Rubric& rubric) {
     const auto critical =
         std::find_if(a.critical.begin(), a.critical.end(), [](const auto& error) { return !error.borderline; });
     if (critical != a.critical.end())
-        return words()("assessment.why-critical", criterionTitle(rubric, critical->criterion));
+        return words()("assessment.why-critical", whatHappened(rubric, critical->criterion));
     if (a.passed == score::Passed::yes) return words()("assessment.why-met");
     if (a.passed == score::Passed::no) {
         for (const score::RuleResult& r : a.rules)

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
 #include "handpiece/app/report/review_gather.h"
@@ -78,6 +79,7 @@ Json burOf(double fromS, const instrument::Bur& bur) {
 /// What was lost because the work is not done, then the criteria, the dearest first.
 Json errorsOf(const ReviewedAgainst& against, std::span<const Sitting> sittings) {
     Json errors = Json::array();
+    const Bearings bearings = against.task ? bearingsOf(*against.task) : Bearings{};
     const score::Assessment& a = against.result->assessment;
     const auto lead = [&](Json& error, const std::vector<measures::Evidence>& evidence) {
         for (const measures::Evidence& e : evidence) {
@@ -102,8 +104,10 @@ Json errorsOf(const ReviewedAgainst& against, std::span<const Sitting> sittings)
         Json error{{"title", criterionTitle(*against.rubric, c.id)},
                    {"lost", c.critical == score::Verdict::yes ? words().text("rubric.critical")
                                                               : lost(c.maxPoints - c.ownPoints)},
-                   {"measured", c.value ? valueOf(c) : said(c.reason)},
-                   {"practise", drillFor(c.measure)}};
+                   {"measured", c.value ? valueOf(c) : report::said(c.reason)}};
+        const Advice advice = adviceOf(c, *against.rubric, bearings);
+        error["practise"] = advice.words;
+        if (advice.at != nullptr) lead(error, {*advice.at});
         lead(error, c.evidence);
         errors.push_back(std::move(error));
     }

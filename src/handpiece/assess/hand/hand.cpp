@@ -7,8 +7,11 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <utility>
 
+#include "handpiece/assess/hand/impulse.h"
 #include "handpiece/assess/hand/smoothness.h"
+#include "handpiece/assess/hand/standing_impulse.h"
 #include "handpiece/assess/hand/tip_path.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
@@ -44,6 +47,9 @@ constexpr double kForceErrorN = 0.0014;
 constexpr double kSmoothnessError = 0.03;
 /// Of one measure.
 constexpr std::size_t kMostTold = 20;
+constexpr const char* kStanding = "impulse-not-undone";
+/// Of StandingImpulse: all that must be kept.
+constexpr int kOnProtected = -1;
 constexpr const char *kNoSamples = "there are no samples", *kNoCut = "nothing was cut",
                      *kNoWay = "the record does not tell how one worked";
 
@@ -97,23 +103,6 @@ class Spread {
     double total_ = 0.0, sum_ = 0.0, least_ = 0.0, greatest_ = 0.0;
 };
 
-/// The moment at which something was greatest.
-struct Moment {
-    std::optional<double> value;
-    Evidence at;
-    void take(double v, const Evidence& now) {
-        if (value && v <= *value) return;
-        value = v;
-        at = now;
-    }
-    [[nodiscard]] std::vector<Evidence> told(std::string text) const {
-        if (!value) return {};
-        Evidence evidence = at;
-        evidence.text = std::move(text);
-        return {evidence};
-    }
-};
-
 /// Time with more load than a limit.
 struct OverLimit {
     double overS = 0.0;
@@ -121,20 +110,6 @@ struct OverLimit {
     bool isOver = false;
     std::optional<Evidence> first;
     Moment worst;
-};
-
-/// Force by time on what must not be pressed.
-struct Impulse {
-    double newtonSeconds = 0.0, lastsS = 0.0;
-    std::optional<Evidence> first;
-    Moment worst;
-    void take(double forceN, double lastsS_, const Evidence& now) {
-        if (!(forceN > 0.0)) return;
-        newtonSeconds += forceN * lastsS_;
-        lastsS += lastsS_;
-        if (!first) first = now;
-        worst.take(forceN, now);
-    }
 };
 
 /// Lays a ruler along a way: what stays within its length of where it lies is noise.
@@ -228,7 +203,10 @@ double number(double value) {
 
 struct HandMeasures::State {
     State(std::span<const Request> asked, const Against& with)
-        : requests(asked.begin(), asked.end()), against(with), overLimit(requests.size()) {}
+        : requests(asked.begin(), asked.end()), against(with), overLimit(requests.size()) {
+        for (const Request& request : requests)
+            asksWhatStands = asksWhatStands || request.kind == kStanding;
+    }
 
     const std::vector<Request> requests;
     const Against against;
@@ -246,6 +224,8 @@ struct HandMeasures::State {
     std::vector<OverLimit> overLimit;  ///< by request
     std::array<Impulse, cases::kTissueCount> onTissue{};
     Impulse onProtected;
+    bool asksWhatStands = false, hasRemoved = false;  ///< the last: in the stroke under way
+    StandingImpulse standing;
     std::string bur;
     ProtectedReach reach;
     std::optional<Way> way;
@@ -300,12 +280,12 @@ struct HandMeasures::State {
         pieceMm = 0.0;
         lastPlace.reset();
     }
-    void endStroke() {
+    void endMovement() {
         fine.end();
         endPiece();
     }
     void pause() {
-        endStroke();
+        endMovement();
         places.end();
         checkPlaces.end();
         path.lift();
@@ -316,6 +296,11 @@ struct HandMeasures::State {
         lastStallS.reset();
         for (OverLimit& over : overLimit)
             over.isOver = false;
+    }
+
+    void press(Tissue tissue, const Sample& s) {
+        onTissue[static_cast<std::size_t>(tissue)].take(number(s.forceN), s.lastsS, here(s));
+        if (asksWhatStands) standing.take(static_cast<int>(tissue), number(s.forceN), s.lastsS, here(s));
     }
 
     void take(const Sample& s);
@@ -331,7 +316,8 @@ void HandMeasures::State::take(const Sample& s) {
     totalS += lasts;
     periodS = std::max(periodS, lasts);
     if (s.isPedalDown && !wasDown) ++strokes;
-    if (wasDown && !s.isPedalDown) endStroke();
+    if (wasDown && !s.isPedalDown) endMovement();
+    hasRemoved = hasRemoved || s.hasRemoved;
     wasDown = s.isPedalDown;
     const core::Vec3& tip = s.burInTooth.positionMm;
     if (s.burInTooth.isValid()) {
@@ -388,7 +374,7 @@ void HandMeasures::State::takeWork(const Sample& s) {
 
 void HandMeasures::State::takeForces(const Sample& s) {
     const double load = number(s.forceN), lasts = s.lastsS;
-    if (s.pressesGingiva) onTissue[static_cast<std::size_t>(Tissue::gum)].take(load, lasts, here(s));
+    if (s.pressesGingiva) press(Tissue::gum, s);
     if (!(s.depthMm > 0.0)) return;
     contactS += lasts;
     contactForce.add(load, lasts);
@@ -407,17 +393,21 @@ void HandMeasures::State::takeForces(const Sample& s) {
     // A tooth beside may be a part of the case's one surface, or a tooth of its own.
     const bool isBeside = s.tooth > 0 || s.tissue == Tissue::neighbour;
     const Tissue on = isBeside ? Tissue::neighbour : s.tissue;
-    if (on != Tissue::gum || !s.pressesGingiva) onTissue[static_cast<std::size_t>(on)].take(load, lasts, here(s));
+    if (on != Tissue::gum || !s.pressesGingiva) press(on, s);
     const bool isKept =
         isBeside || on == Tissue::pulp ||
         (against.zones != nullptr && s.burInTooth.isValid() && reach.reaches(*against.zones, s.burInTooth));
-    if (isKept) onProtected.take(load, lasts, here(s));
+    if (!isKept) return;
+    onProtected.take(load, lasts, here(s));
+    if (asksWhatStands) standing.take(kOnProtected, load, lasts, here(s));
 }
 
 Measured HandMeasures::State::protectedImpulse(Measured m) const {
     const auto index =
         m.of.tissue.empty() ? std::size_t{0} : static_cast<std::size_t>(cases::tissueByName(m.of.tissue));
-    const Impulse& on = m.of.tissue.empty() ? onProtected : onTissue[index];
+    const Impulse on = m.kind == kStanding   ? standing.on(m.of.tissue.empty() ? kOnProtected : static_cast<int>(index))
+                       : m.of.tissue.empty() ? onProtected
+                                             : onTissue[index];
     m.value = on.newtonSeconds;
     m.uncertainty = kForceErrorN * on.lastsS;
     if (on.first) {
@@ -467,7 +457,7 @@ Measured HandMeasures::State::measured(std::size_t index) {
         m.uncertainty = kSmoothnessError;
         return m;
     }
-    if (kind == "impulse-on-protected") return protectedImpulse(std::move(m));
+    if (kind == "impulse-on-protected" || kind == kStanding) return protectedImpulse(std::move(m));
     if (kind == "load-over-limit" || kind == "load-over-limit-share") {
         if (!request.of.limit) return none("it needs a limit");
         if (!(contactS > 0.0)) return none("the bur touched nothing");
@@ -539,9 +529,22 @@ void HandMeasures::takeWay(const Way& way) {
     state_->way = way;
 }
 
-void HandMeasures::takeStep(double atS) {
-    ++state_->steps;
-    state_->tell(state_->stepAt, atS, "taken back or done again");
+void HandMeasures::takeStep(double atS, Step step) {
+    State& s = *state_;
+    ++s.steps;
+    s.tell(s.stepAt, atS, "taken back or done again");
+    switch (step) {
+        case Step::undo:
+            return s.standing.undo();
+        case Step::redo:
+            return s.standing.redo();
+        case Step::reset:
+            return s.standing.reset();
+    }
+}
+
+void HandMeasures::endStroke() {
+    state_->standing.endStroke(std::exchange(state_->hasRemoved, false));
 }
 
 void HandMeasures::take(const Sample& sample) {

@@ -31,6 +31,7 @@ struct Sample {
     cases::Tissue tissue = cases::Tissue::none;  ///< that carries most of the pressure
     int tooth = 0;                               ///< that it is of; 0 is the one worked on
     bool isPedalDown = false, isCutting = false, isStalled = false, pressesGingiva = false;
+    bool hasRemoved = false;  ///< more of the teeth is gone than at the tick before
 };
 
 /// From where and how somebody works, as far as the record tells it.
@@ -62,8 +63,10 @@ class HandMeasures {
     /// change, nor is one of the same name.
     void takeBur(double atS, const std::string& name, const instrument::Bur* bur);
     void takeWay(const Way& way);
-    /// Something was undone, redone or reset.
-    void takeStep(double atS);
+    enum class Step { undo, redo, reset };
+    void takeStep(double atS, Step step);
+    /// As the record tells it: after the pedal came up, once all that was cut had been handed over.
+    void endStroke();
     void take(const Sample& sample);
 
     /// One value, or reason why there is none, a request, in their order.

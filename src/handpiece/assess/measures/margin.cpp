@@ -104,7 +104,7 @@ Taken takeOutlineExtent(CutTooth& tooth, const Selection& of) {
         taken.offMm += end.second->roughMm;
     }
     taken.value = extent[1] - extent[0];
-    taken.evidence.push_back({{}, outermost->p, {}, "outermost of the outline, " + of.side});
+    taken.evidence.push_back({{}, outermost->p, {}, "outermost of the outline"});
     return taken;
 }
 

@@ -49,12 +49,16 @@ struct MeasureKind {
 
 /// Raised with every change after which the same work may be measured otherwise, or another measure is taken: kept
 /// values of before are taken anew.
-inline constexpr int kMeasuresRevision = 5;
+inline constexpr int kMeasuresRevision = 6;
 
 /// All there are, by id.
 [[nodiscard]] std::span<const MeasureKind> measureKinds();
 /// Null when there is none of this id.
 [[nodiscard]] const MeasureKind* findMeasureKind(std::string_view id);
+
+/// Texts of the evidence that a mean or a median has beside its own place: where one in twenty places has less, and
+/// where one in twenty has more.
+inline constexpr const char *kLeastHere = "least here", *kMostHere = "most here";
 
 /// Where and when a value came from.
 struct Evidence {

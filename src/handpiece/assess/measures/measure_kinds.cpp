@@ -39,6 +39,8 @@ constexpr std::array kKinds{
     MeasureKind{"force", "N", kHand, kStat, 0, 100, "load on the bur while it cuts"},
     MeasureKind{"gouge-depth", "mm", kTooth, 0, 0, 20, "deepest cut into floor or walls of the pulp chamber"},
     MeasureKind{"idle-time", "s", kHand, 0, 0, 1e7, "pedal up and bur off the tooth"},
+    MeasureKind{"impulse-not-undone", "N s", kHand, kTissue, 0, 1e6,
+                "as impulse-on-protected, without what was done in strokes that were taken back"},
     MeasureKind{"impulse-on-protected", "N s", kHand, kTissue, 0, 1e6,
                 "load by time on the pulp, a protected zone or a tooth beside"},
     MeasureKind{"isthmus", "mm", kTooth, kStat, 0, 20,

@@ -45,9 +45,17 @@ struct Places {
     /// scan. `isClosed`: the last place stands beside the first.
     [[nodiscard]] Places evened(double noiseMm, std::size_t reach, bool isClosed) const;
     [[nodiscard]] Taken taken(const Selection& of, std::string_view ownStatistic, const char* text) const {
+        const std::string_view statistic = of.statistic.empty() ? ownStatistic : of.statistic;
         std::size_t where = 0;
-        const double value = statisticOf(values, of.statistic.empty() ? ownStatistic : of.statistic, &where);
-        return at(value, mm[where], text);
+        const double value = statisticOf(values, statistic, &where);
+        Taken taken = at(value, mm[where], text);
+        // The place of a median says nothing of where to go on: its two ends do.
+        if ((statistic == "mean" || statistic == "median") && values.size() > 1)
+            for (const auto& [end, words] : {std::pair{"p5", kLeastHere}, std::pair{"p95", kMostHere}}) {
+                (void)statisticOf(values, end, &where);
+                taken.evidence.push_back({{}, mm[where], {}, words});
+            }
+        return taken;
     }
 };
 

@@ -19,8 +19,8 @@ core::Box common(const core::Box& a, const core::Box& b) {
 }
 
 /// f < 0 in the tooth. Where f is clear of the border the tooth, which is dear to ask, is not asked.
-template <class F>
-geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole, const core::Box& box, double finestMm,
+template <class F, class Tooth>
+geometry::TriangleMesh surfaceIn(const F& f, const Tooth& tooth, const core::Box& box, double finestMm,
                                  const core::Progress& progress) {
     if (box.isEmpty()) return {};
     double spacingMm = finestMm;
@@ -46,7 +46,7 @@ geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole
                     const Vec3 p = grid.originMm + spacingMm * Vec3(static_cast<double>(x), static_cast<double>(y),
                                                                     static_cast<double>(z));
                     double value = f(p);
-                    if (value < 2.0 * spacingMm) value = std::max(value, whole.signedDistance(p));
+                    if (value < 2.0 * spacingMm) value = std::max(value, tooth(p));
                     values[z * layer + y * row + x] = static_cast<float>(value);
                 }
             }
@@ -56,7 +56,19 @@ geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole
     return geometry::isosurface(grid, core::part(progress, 0.9, 1.0));
 }
 
+template <class F>
+geometry::TriangleMesh surfaceOf(const F& f, const geometry::TriangleTree& whole, const core::Box& box, double finestMm,
+                                 const core::Progress& progress) {
+    return surfaceIn(
+        f, [&whole](const Vec3& p) { return whole.signedDistance(p); }, box, finestMm, progress);
+}
+
 }  // namespace
+
+geometry::TriangleMesh regionSurface(const geometry::ScalarFunction& region, const geometry::ScalarFunction& tooth,
+                                     const core::Box& box, double finestMm, const core::Progress& progress) {
+    return surfaceIn(region, tooth, box, finestMm, progress);
+}
 
 geometry::TriangleMesh zoneSurface(SeenZone zone, const cases::Tooth& tooth, const Recipe& recipe, const Laid& laid,
                                    const core::Progress& progress, double finestMm) {

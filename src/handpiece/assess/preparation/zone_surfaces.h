@@ -8,6 +8,7 @@
 
 #include "handpiece/assess/preparation/preparation.h"
 #include "handpiece/base/core/progress.h"
+#include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 
 namespace handpiece::preparation {
@@ -30,5 +31,11 @@ inline constexpr std::array kSeenZones{SeenZone::target, SeenZone::leeway, SeenZ
 [[nodiscard]] geometry::TriangleMesh zoneSurface(SeenZone zone, const cases::Tooth& tooth, const Recipe& recipe,
                                                  const Laid& laid, const core::Progress& progress = {},
                                                  double finestMm = 0.1);
+
+/// The same of any region within any tooth, both as signed distances: where both are negative. `tooth` is dear to ask,
+/// and is asked near the region only.
+[[nodiscard]] geometry::TriangleMesh regionSurface(const geometry::ScalarFunction& region,
+                                                   const geometry::ScalarFunction& tooth, const core::Box& box,
+                                                   double finestMm = 0.1, const core::Progress& progress = {});
 
 }  // namespace handpiece::preparation

@@ -43,6 +43,7 @@ enum class Notice {
     hullNeedsWholeTooth,
     settingsBroken,
     crashed,
+    crashedNoRoom,
     codeLater,
     burMissing,
     burLocked,

@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "handpiece/app/course/first_mouth.h"
 #include "handpiece/app/simulation/history_bytes.h"
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
@@ -32,9 +33,9 @@ inline constexpr std::array<std::string_view, 7> kUnaidedLocks{
 
 /// A tooth that the program makes: one of the 32 of a patient.
 struct Starter {
-    int fdi = 46;
+    int fdi = course::kFirstFdi;
     dentition::Patient patient{};
-    std::size_t faces = 68151;  ///< of its surface: one of the five resolutions of the paper's Table II
+    std::size_t faces = course::kFirstFaces;  ///< of its surface: one of the five resolutions of the paper's Table II
     bool inMouth = true;        ///< with the patient's other teeth, gingiva and bone; else alone
     friend bool operator==(const Starter&, const Starter&) = default;
 };

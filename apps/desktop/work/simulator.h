@@ -154,6 +154,8 @@ class Simulator : public QObject {
     void pause(bool isPaused) { isPaused_->store(isPaused, std::memory_order_relaxed); }
 
     void recover(const Crashed& crashed, std::function<void()> then = {});
+    /// The recordings, and how much room there is for them.
+    [[nodiscard]] const SessionShelf& shelf() const noexcept { return shelf_; }
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
     void forget(const Finished& done) { shelf_.settle(done.work.session); }

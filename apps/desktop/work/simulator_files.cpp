@@ -245,14 +245,15 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
         });
 }
 
-/// What was brought back is in no file yet: the recording under way holds it, and says so.
+/// What was brought back is in no file yet: the recording under way holds it, and says so. Where none could go on, the
+/// one that was left keeps its marker.
 void Simulator::takeOver(const Crashed& file) {
     if (file.note.unsaved) {
         savedMm3_ = {};
         savedOthersMm3_ = 0.0;
         markUnsaved(true);
     }
-    if (file.session != shelf_.current()) shelf_.settle(file.session);
+    if (!shelf_.current().empty() && file.session != shelf_.current()) shelf_.settle(file.session);
 }
 
 void Simulator::replayThis() {

@@ -4,6 +4,7 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileInfo>
+#include <QLocale>
 #include <QMenu>
 #include <QMessageBox>
 #include <QPointer>
@@ -269,9 +270,21 @@ void FilesFeature::listRecent() {
     recent_->menuAction()->setEnabled(number > 0);
 }
 
+/// Of which tooth and when: the name of a recording's file says neither to a person.
+QString FilesFeature::recordingTitle() const {
+    const QFileInfo file(toQString(simulator_.document().caseFile));
+    QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
+    if (!when.isValid()) when = file.lastModified();
+    return tr("Recording of %1, %2")
+        .arg(toothName(simulator_.toothCase()->fdiNumber), QLocale().toString(when, QLocale::ShortFormat));
+}
+
 void FilesFeature::showTitle() {
     const Document& document = simulator_.document();
     QString name = QString::fromStdString(document.name);
+    if (simulator_.mode() == Simulator::Mode::replay && simulator_.toothCase() &&
+        document.caseFile.filename() == document.name)
+        name = recordingTitle();
     // A starter tooth has a name in every language until it is saved under one of the student's own.
     if (document.starter && document.attemptFile.empty() && simulator_.toothCase())
         name = toothName(simulator_.toothCase()->fdiNumber);

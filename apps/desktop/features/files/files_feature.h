@@ -30,6 +30,7 @@ class FilesFeature : public Feature {
     void takeSaved(const QString& file);
     void writePicture();
     void listRecent();
+    [[nodiscard]] QString recordingTitle() const;
     void showTitle();
     void offerToMend(ErrorDialog* dialog);
     void mend();

@@ -44,6 +44,7 @@ enum class Notice {
     settingsBroken,
     crashed,
     crashedNoRoom,
+    onlyTouch,
     codeLater,
     burMissing,
     burLocked,

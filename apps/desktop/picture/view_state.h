@@ -41,8 +41,8 @@ struct ViewWidget::State {
     QString problem, remedy;  // why nothing is drawn
     QString waiting;          // for what, while there is no tooth
     bool isSketch = false;
-    view::Camera sketchEye;                // as a sketch is first seen
-    std::optional<view::Camera> movedEye;  // and as a person turned it, for what comes next
+    view::Camera firstEye;                 // as it was first seen
+    std::optional<view::Camera> movedEye;  // as a person turned it, for what comes next
     std::optional<Frame> frame;
     bool everPressed = false, everTurned = false;
 
@@ -101,7 +101,7 @@ struct ViewWidget::State {
     [[nodiscard]] std::optional<view::MirrorPose> mirrorPose() const;
     [[nodiscard]] core::Vec3 burAxis() const;
 
-    void keepEye() {  // that was moved while there was only a sketch
+    void takeKeptEye() {  // that was moved while there was only a sketch
         if (const auto moved = std::exchange(movedEye, std::nullopt)) {
             camera = *moved;
             eyeMoved();

@@ -60,7 +60,8 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed));
     s.probe->setTooth(s.tooth);
     showStandardView(view::StandardView::oblique);
-    s.keepEye();
+    s.firstEye = s.camera;
+    s.takeKeptEye();
     s.layOut();
 }
 
@@ -87,9 +88,14 @@ void ViewWidget::showSketch(const cases::Case& sketch) {
     s.take(sketch, bounds);
     s.render->setTooth(nullptr, {}, std::move(shown), nullptr);
     showStandardView(view::StandardView::oblique);
-    s.sketchEye = s.camera;
-    s.keepEye();
+    s.firstEye = s.camera;
+    s.takeKeptEye();
     s.layOut();
+}
+
+void ViewWidget::keepEye() {
+    State& s = *state_;
+    if (s.camera.eyeMm != s.firstEye.eyeMm || s.camera.targetMm != s.firstEye.targetMm) s.movedEye = s.camera;
 }
 
 bool ViewWidget::hasSketch() const {
@@ -103,8 +109,7 @@ void ViewWidget::setWaiting(const QString& forWhat) {
 
 void ViewWidget::clearTooth() {
     State& s = *state_;
-    if (s.isSketch && (s.camera.eyeMm != s.sketchEye.eyeMm || s.camera.targetMm != s.sketchEye.targetMm))
-        s.movedEye = s.camera;
+    if (s.isSketch) keepEye();
     s.isSketch = false;
     setPointer(nullptr, {});
     setSection(std::nullopt);

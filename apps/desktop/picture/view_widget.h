@@ -51,6 +51,8 @@ class ViewWidget : public QWidget {
     /// tooth itself.
     void showSketch(const cases::Case& sketch);
     [[nodiscard]] bool hasSketch() const;
+    /// The next tooth is looked at as this one is, where somebody turned it.
+    void keepEye();
     /// What is said where there is no tooth yet; empty: that none is open.
     void setWaiting(const QString& forWhat);
     void clearTooth();

@@ -22,9 +22,8 @@ int main(int argc, char** argv) {
         std::printf("%s", line.help ? qPrintable(desktop::usage()) : "handpiece-desktop " HANDPIECE_VERSION "\n");
         return 0;
     }
-    prepared::use(prepared::installedFolder(), prepared::list(), [](const std::string& problem) {
-        std::fprintf(stderr, "handpiece-desktop: %s\n", problem.c_str());
-    });
+    prepared::use(prepared::installedFolder(), prepared::list(),
+                  [](const std::string& problem) { std::fprintf(stderr, "handpiece-desktop: %s\n", problem.c_str()); });
     // It sets the environment for a moment: before any thread.
     if (line.sound) sound::preferLowLatency();
     // Qt would abort, with a core dump.

@@ -1484,6 +1484,10 @@
         <translation>前回は保存されずに終わりましたが、ディスクの空きが足りません。%3 のあるディスクに %2 MB の空きができれば（現在 %4 MB）「%1」を復元できます。失われたものはありません。空きをつくってから、もう一度お試しください。</translation>
     </message>
     <message>
+        <source>The tooth can be touched now, and cut once it is prepared (%1 % done).</source>
+        <translation>今は歯に触れることができます。準備ができれば切削できます（%1 % 完了）。</translation>
+    </message>
+    <message>
         <source>Your code goes into what you save from now on. This recording began without it.</source>
         <translation>受講者コードは、これから保存するものに書き込まれます。今の記録はコードなしで始まっています。</translation>
     </message>

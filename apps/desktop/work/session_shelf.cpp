@@ -25,8 +25,8 @@ fs::path beside(const fs::path& session, const char* extension) {
     return fs::path(session).replace_extension(extension);
 }
 
-/// Held by a program that lives. A lock of one that died is taken over and given back. Where none can be made, on a full
-/// disk, that says nothing of anybody: what a program that died left is offered all the same.
+/// Held by a program that lives. A lock of one that died is taken over and given back. Where none can be made, on a
+/// full disk, that says nothing of anybody: what a program that died left is offered all the same.
 bool isAlive(const fs::path& session) {
     QLockFile lock(toQString(beside(session, ".lock")));
     lock.setStaleLockTime(0);

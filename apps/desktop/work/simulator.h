@@ -99,6 +99,17 @@ class Simulator : public QObject {
     /// Work that a crash left behind, the newest first.
     [[nodiscard]] std::vector<Crashed> crashed() const { return shelf_.crashed(); }
 
+    /// While the tooth that comes cannot be cut yet: it can be touched, with the mouse. Nothing of it is recorded.
+    struct Touch {
+        std::shared_ptr<Touchable> of;
+        std::unique_ptr<simulation::LiveSession> session;
+        std::shared_ptr<simulation::SampleFeed> feed;
+        std::shared_ptr<device::PointerMailbox> mailbox;
+        core::Pose startPose;
+    };
+    /// Null while there is none.
+    [[nodiscard]] const Touch* touch() const noexcept { return touch_.get(); }
+
     // Documents. A new one takes the place of the old one once it is ready: whoever calls asks about unsaved work
     // first.
 
@@ -267,6 +278,8 @@ class Simulator : public QObject {
     void jobStepped(const QString& step);
     /// While nothing is open: the tooth that comes, to be looked at.
     void sketched(const std::shared_ptr<const handpiece::cases::Case>& sketch);
+    /// While nothing is open: touch() is there, until jobEnded(), after which nothing of it may be used.
+    void touchBegan();
     void jobProgressed(double fraction);
     void jobEnded();
     /// About 30 times a second: sample() and status() are new.
@@ -296,6 +309,7 @@ class Simulator : public QObject {
     void goOn();
     void load(LoadRequest request, const QString& title, std::function<void()> done = {});
     [[nodiscard]] LoadListener loadListener();
+    void beginTouch(std::shared_ptr<Touchable> of);
     [[nodiscard]] static QString stepText(LoadStep step);
     void loadFor(LoadRequest request, const QString& title, std::function<void(LoadedTooth)> then);
     void showReviewed();
@@ -363,6 +377,7 @@ class Simulator : public QObject {
     std::unique_ptr<sound::Player> player_;
     std::shared_ptr<Ear> ear_;
     std::unique_ptr<simulation::LiveSession> liveSession_;
+    std::unique_ptr<Touch> touch_;
     std::unique_ptr<ReplayDriver> replay_;
     std::unique_ptr<Job> job_, soundJob_;
     int loads_ = 0;

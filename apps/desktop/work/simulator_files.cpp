@@ -18,6 +18,7 @@ void Simulator::start(const QString& title, Job::Work work, std::function<void()
     const auto end = [this] {
         job_.release()->deleteLater();
         emit jobEnded();
+        touch_.reset();
     };
     connect(job_.get(), &Job::progressed, this, &Simulator::jobProgressed);
     connect(job_.get(), &Job::done, this, [this, end, done = std::move(done)] {
@@ -119,6 +120,9 @@ LoadListener Simulator::loadListener() {
         tell([this, sketch = std::move(sketch)] {
             if (mode_ == Mode::empty) emit sketched(sketch);
         });
+    };
+    listener.touchable = [this, tell](std::shared_ptr<Touchable> touchable) {
+        tell([this, touchable = std::move(touchable)] { beginTouch(touchable); });
     };
     return listener;
 }

@@ -45,8 +45,8 @@ constexpr CommandOf<Command> kCommands[] = {
      QT_TRANSLATE_NOOP("Commands", "Choose which key or button does what"), "keyboard", "Ctrl+Shift+K",
      in(Shelf::tools, 20)},
     {Command::firstSteps, "actionFirstSteps", QT_TRANSLATE_NOOP("Commands", "First steps again"),
-     QT_TRANSLATE_NOOP("Commands", "Show the hints of the first minute again, from the first"), "info",
-     "Ctrl+Shift+F1", in(Shelf::help, 1)},
+     QT_TRANSLATE_NOOP("Commands", "Show the hints of the first minute again, from the first"), "info", "Ctrl+Shift+F1",
+     in(Shelf::help, 1)},
 };
 
 }  // namespace

@@ -27,7 +27,8 @@ class WelcomeStrip : public QWidget {
     void markDone(Step step);
     /// With a device instead of the mouse the hints differ.
     void setPointerIsMouse(bool mouse);
-    /// Nothing can be done before a tooth is there to be cut, and an exercise may want no hints: none until this says so.
+    /// Nothing can be done before a tooth is there to be cut, and an exercise may want no hints: none until this says
+    /// so.
     void setAllowed(bool allowed);
     /// All steps anew, from the first.
     void beginAgain();

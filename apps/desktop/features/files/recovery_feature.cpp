@@ -54,9 +54,8 @@ bool RecoveryFeature::hasRoomFor(const Crashed& crashed) {
     window_.notices().remove(Notice::crashedNoRoom);
     if (shelf.hasRoom()) return true;
     const auto megabytes = [](std::uint64_t bytes) { return QLocale().toString(qulonglong{bytes >> 20}); };
-    window_.notices().tell(Notice::crashedNoRoom,
-                           {titleOf(crashed.note), megabytes(shelf.roomBytes()), toQString(shelf.folder()),
-                            megabytes(shelf.freeBytes())});
+    window_.notices().tell(Notice::crashedNoRoom, {titleOf(crashed.note), megabytes(shelf.roomBytes()),
+                                                   toQString(shelf.folder()), megabytes(shelf.freeBytes())});
     return false;
 }
 

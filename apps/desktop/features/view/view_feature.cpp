@@ -107,9 +107,8 @@ ViewFeature::ViewFeature(const FeatureContext& context)
     connect(&view_, &ViewWidget::helpRequested, &view_, &ViewWidget::toggleHelpCard);
     on(commands_[Command::help], [this] { view_.toggleHelpCard(); });
     on(commands_[Command::guide], [this] {
-        auto* guide = new GuideDialog(QLocale().language() == QLocale::Japanese ? QStringLiteral("ja")
-                                                                                : QStringLiteral("en"),
-                                      &window_);
+        auto* guide = new GuideDialog(
+            QLocale().language() == QLocale::Japanese ? QStringLiteral("ja") : QStringLiteral("en"), &window_);
         guide->setAttribute(Qt::WA_DeleteOnClose);
         guide->show();
     });

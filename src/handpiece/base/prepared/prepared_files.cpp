@@ -55,8 +55,8 @@ std::string sha256Of(std::span<const std::byte> data) {
 fs::path installedFolder() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    for (const fs::path& folder : {program.parent_path().parent_path() / "share/handpiece/prepared",
-                                   fs::path("/usr/share/handpiece/prepared")})
+    for (const fs::path& folder :
+         {program.parent_path().parent_path() / "share/handpiece/prepared", fs::path("/usr/share/handpiece/prepared")})
         if (fs::is_directory(folder, error)) return folder;
     return {};
 }
@@ -78,7 +78,8 @@ std::optional<std::vector<std::byte>> read(std::string_view name) {
     if (one == nullptr) return std::nullopt;
     const fs::path place = used().folder / name;
     try {
-        if (used().folder.empty()) throw core::Error("the folder of prepared teeth is not there", "share/handpiece/prepared");
+        if (used().folder.empty())
+            throw core::Error("the folder of prepared teeth is not there", "share/handpiece/prepared");
         std::vector<std::byte> data = core::readFile(place, kMostBytes);
         if (sha256Of(data) == one->sha256) return data;
         refuse(name);
@@ -89,8 +90,9 @@ std::optional<std::vector<std::byte>> read(std::string_view name) {
 }
 
 void refuse(std::string_view name) {
-    tellOnce(fmt::format("{}: it is not the file that came with this program; it is made anew. Install the package again.",
-                         (used().folder / name).string()));
+    tellOnce(
+        fmt::format("{}: it is not the file that came with this program; it is made anew. Install the package again.",
+                    (used().folder / name).string()));
 }
 
 void collectIn(fs::path folder) {

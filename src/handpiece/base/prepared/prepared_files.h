@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What came with the program ready made: teeth and their fields, each believed only when its SHA-256 is in the program.
+/// What came with the program ready made: teeth and their fields, each believed only when its SHA-256 is in the
+/// program.
 ///
 /// A file that is missing, of another version or changed is as if there were none: what it holds is made as without it.
 

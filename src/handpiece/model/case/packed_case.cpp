@@ -81,8 +81,8 @@ std::vector<std::byte> stlOf(const Surface& s, const std::string& name) {
             }
         }
     }
-    if (used != count || !std::all_of(mesh.vertices.begin(), mesh.vertices.end(),
-                                      [](const core::Vec3& v) { return v.allFinite(); }))
+    if (used != count ||
+        !std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const core::Vec3& v) { return v.allFinite(); }))
         return {};
     return geometry::stlBytes(mesh, name);
 }
@@ -154,7 +154,9 @@ std::optional<Case> unpackCase(std::span<const std::byte> packed, const std::fil
         const std::size_t count = length < lengths.size() ? lengths[length] : 0;
         fits = fits && length < lengths.size() && count <= from.size() - at;
         ++length;
-        if (fits) into.assign(from.begin() + static_cast<std::ptrdiff_t>(at), from.begin() + static_cast<std::ptrdiff_t>(at + count));
+        if (fits)
+            into.assign(from.begin() + static_cast<std::ptrdiff_t>(at),
+                        from.begin() + static_cast<std::ptrdiff_t>(at + count));
         at += fits ? count : 0;
     };
     const std::string all(reinterpret_cast<const char*>(names->data()), names->size());

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::uint64_t kMagic = 0x3144454b43415048;  // "HPACKED1"
 constexpr std::uint64_t kMostBytes = 2ull << 30;
-constexpr std::size_t kGroup = 64;  ///< bricks that begin with nothing known, so that groups are unpacked beside each other
+constexpr std::size_t kGroup =
+    64;  ///< bricks that begin with nothing known, so that groups are unpacked beside each other
 
 // A node's triangle is told by where in its brick it was met before.
 constexpr std::uint8_t kAsLeft = 0, kAsBelow = 1, kAsBehind = 2, kFresh = 3, kListed = 4, kOfAnother = 255;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <optional>
@@ -46,6 +47,13 @@ class Loader {
         preparedName_ = fmt::format("{:016x}", key_);
     }
 
+    [[nodiscard]] bool isKept() const {
+        std::error_code error;
+        return std::any_of(places_.begin(), places_.end(),
+                           [&](const std::filesystem::path& place) { return std::filesystem::exists(place, error); }) ||
+               (!preparedName_.empty() && prepared::isKnown(preparedName_ + kField));
+    }
+
     field::DistanceField field(const core::Progress& progress) {
         if (!places_.empty()) tree_.emplace(outer_);
         for (const std::filesystem::path& place : places_)
@@ -67,9 +75,8 @@ class Loader {
         buildParts(core::part(progress, 0.1, 0.2));
         const bool isCollecting = prepared::isCollecting() && !preparedName_.empty();
         std::vector<std::uint32_t> nearest;
-        field::DistanceField made =
-            field::FieldBuilder::fromSurface(outer_, *tree_, parts_, settings_.field, core::part(progress, 0.2, 1.0),
-                                             isCollecting ? &nearest : nullptr);
+        field::DistanceField made = field::FieldBuilder::fromSurface(
+            outer_, *tree_, parts_, settings_.field, core::part(progress, 0.2, 1.0), isCollecting ? &nearest : nullptr);
         if (isCollecting) prepared::keep(preparedName_ + kField, field::packField(made, nearest, key_));
         if (!places_.empty()) (void)field::writeFieldFile(places_, field::encodeField(made, key_));
         return made;
@@ -87,7 +94,8 @@ class Loader {
             if (auto found = field::readTissueFile(place, grid, key, field::TissueSet(case_))) return std::move(*found);
         }
         if (const auto packed = preparedFile(kTissues)) {
-            if (auto found = field::unpackTissues(*packed, grid, key, field::TissueSet(case_))) return std::move(*found);
+            if (auto found = field::unpackTissues(*packed, grid, key, field::TissueSet(case_)))
+                return std::move(*found);
             prepared::refuse(preparedName_ + kTissues);
         }
         if (parts_.empty()) buildParts(core::part(progress, 0.0, 0.1));
@@ -143,6 +151,10 @@ class Loader {
 };
 
 }  // namespace
+
+bool isKept(const cases::Case& toothCase, const LoadSettings& settings) {
+    return Loader(toothCase, settings).isKept();
+}
 
 std::shared_ptr<const ToothModel> loadModel(const cases::Case& toothCase, const LoadSettings& settings,
                                             const core::Progress& progress) {

@@ -15,6 +15,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/work_on.h"
+#include "handpiece/model/tooth/kept_model.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"

@@ -12,6 +12,7 @@
 #include "handpiece/model/field/field_cache.h"
 #include "handpiece/model/field/packed_field.h"
 #include "handpiece/model/field/tissue_cache.h"
+#include "handpiece/model/tooth/kept_model.h"
 #include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::tooth {

@@ -57,8 +57,6 @@ struct LoadSettings {
 [[nodiscard]] std::shared_ptr<const ToothModel> loadModel(const cases::Case& toothCase,
                                                           const LoadSettings& settings = {},
                                                           const core::Progress& progress = {});
-/// Whether it would be reopened: the distances are kept somewhere, which are most of the work.
-[[nodiscard]] bool isKept(const cases::Case& toothCase, const LoadSettings& settings);
 /// The share of its progress that is over when the distances are known and the tissues are laid out.
 inline constexpr double kDistancesShare = 0.6;
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first minute: what is seen, touched and said before a tooth can be cut,
-// and after a program that was killed.
+// The first minute: what is seen, touched and said before a tooth can be cut, and after a program that was killed.
 #include <QLabel>
 #include <QLineEdit>
 #include <QListWidget>
@@ -163,6 +162,31 @@ TEST_F(FirstMinute, WithoutRoomTheWorkThatWasLeftIsOfferedAndKept) {
     EXPECT_FALSE(simulator().isBusy());
     EXPECT_EQ(notices()->current(), "crashed-no-room");
     EXPECT_EQ(simulator().crashed().size(), 1u);
+}
+
+TEST_F(FirstMinute, OnAFullDiskWorkThatWasLeftIsStillFound) {
+    const fs::path session = leaveWork();
+    // As a killed program leaves it.
+    std::ofstream(fs::path(session).replace_extension(".lock")) << "999999\nhandpiece\n"
+                                                                << qPrintable(QSysInfo::machineHostName()) << "\n";
+    rlimit before{};
+    getrlimit(RLIMIT_FSIZE, &before);
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    const rlimit none{0, before.rlim_max};
+    ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &none), 0);
+    SessionShelf shelf(at("data/sessions"));
+    const std::size_t found = shelf.crashed().size();
+    std::string id;
+    try {
+        shelf.goOn(session);
+    } catch (const core::Error& error) {
+        id = error.id();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    std::signal(SIGXFSZ, handler);
+    EXPECT_EQ(found, 1u);
+    EXPECT_TRUE(id == "no-space" || id == "not-writable") << id << ": a plain word, not that its place is taken";
+    EXPECT_EQ(shelf.crashed().size(), 1u);
 }
 
 TEST_F(FirstMinute, ARecordingIsCalledByItsToothAndTime) {

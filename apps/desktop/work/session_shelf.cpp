@@ -7,6 +7,7 @@
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
+#include <QSysInfo>
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -30,7 +31,14 @@ fs::path beside(const fs::path& session, const char* extension) {
 bool isAlive(const fs::path& session) {
     QLockFile lock(toQString(beside(session, ".lock")));
     lock.setStaleLockTime(0);
-    if (!lock.tryLock(0)) return lock.error() == QLockFile::LockFailedError;
+    if (!lock.tryLock(0)) {
+        qint64 pid = 0;
+        QString host, name;
+        if (lock.error() != QLockFile::LockFailedError) return false;
+        // To take over what a dead program left needs room as well.
+        const bool isKnown = lock.getLockInfo(&pid, &host, &name) && host == QSysInfo::machineHostName();
+        return !isKnown || QFile::exists(QStringLiteral("/proc/%1").arg(pid));
+    }
     lock.unlock();
     return false;
 }
@@ -116,8 +124,7 @@ void SessionShelf::take(const fs::path& session) {
     auto lock = std::make_unique<QLockFile>(toQString(beside(session, ".lock")));
     lock->setStaleLockTime(0);
     if (!lock->tryLock(0)) {
-        if (lock->error() == QLockFile::LockFailedError)
-            throw core::Error("the recording's place is taken", session.string(), "start again");
+        if (isAlive(session)) throw core::Error("the recording's place is taken", session.string(), "start again");
         const int why = hasRoom() ? EACCES : ENOSPC;
         throw core::Error(std::strerror(why), session.string(), "make room, or check the folder's permissions")
             .as(core::writeErrorId(why), {std::strerror(why)});

@@ -3,6 +3,7 @@
 whole. test_packaging.py BUILD SOURCE"""
 
 import fnmatch
+import hashlib
 import os
 import pathlib
 import re
@@ -32,6 +33,11 @@ COMPONENTS = {
     "doc": ("handpiece-doc", 40, ["share/doc/handpiece-doc/*"]),
     "archive": (None, 1, ["share/doc/handpiece/*", "share/handpiece/system/*"]),
 }
+IS_PREPARED = CACHE.get("HANDPIECE_PREPARED") == "ON"
+if IS_PREPARED:
+    # The first teeth, ready made: at most 100 MB more.
+    package, megabytes, patterns = COMPONENTS["desktop"]
+    COMPONENTS["desktop"] = (package, megabytes + 100, [*patterns, "share/handpiece/prepared/*.packed-*"])
 OPTIONAL = {"desktop": "HANDPIECE_BUILD_DESKTOP", "school": "HANDPIECE_BUILD_SCHOOL", "python": "HANDPIECE_BUILD_PYTHON"}
 
 
@@ -101,6 +107,19 @@ class Installed(unittest.TestCase):
             version = said(moved, "--version", env={**os.environ, "QT_QPA_PLATFORM": "offscreen"})
             self.assertRegex(version, r"\d+\.\d+\.\d+")
             moved.rename(program)
+
+    def test_what_is_prepared_is_what_the_window_believes(self):
+        if not IS_PREPARED:
+            self.skipTest("built without (HANDPIECE_PREPARED)")
+        folder = self.trees["desktop"] / "share/handpiece/prepared"
+        program = (self.trees["desktop"] / "bin/handpiece-desktop").read_bytes()
+        kinds = set()
+        for file in folder.iterdir():
+            kinds.add(file.suffix)
+            self.assertIn(file.name.encode(), program, file.name)
+            self.assertIn(hashlib.sha256(file.read_bytes()).hexdigest().encode(), program, file.name)
+        self.assertEqual(kinds, {".packed-case", ".packed-field", ".packed-tissues"})
+        self.assertTrue(list(folder.glob("mouth-*.packed-case")) and list(folder.glob("tooth-*-46-*.packed-case")))
 
     def test_icons(self):
         if "desktop" not in self.trees:

@@ -93,6 +93,13 @@ constexpr Row kRows[] = {
                        "The last session ended without saving. What was cut of \"%1\" can be brought back, now or "
                        "later with File, Recover."),
      only(End::crashSettled), QT_TRANSLATE_NOOP("Notices", "Bring it back"), QT_TRANSLATE_NOOP("Notices", "Not now")},
+    {Notice::crashedNoRoom, "crashed-no-room", Kind::warning,
+     QT_TRANSLATE_NOOP("Notices",
+                       "The last session ended without saving, and the disk is full: \"%1\" can be brought back once "
+                       "%2 MB are free where %3 is (now %4 MB). Nothing is lost. Make room, then try again."),
+     only(End::crashSettled), QT_TRANSLATE_NOOP("Notices", "Try again"), QT_TRANSLATE_NOOP("Notices", "Not now")},
+    {Notice::onlyTouch, "only-touch", Kind::hint,
+     QT_TRANSLATE_NOOP("Notices", "The tooth can be touched now, and cut once it is prepared (%1 % done).")},
     {Notice::codeLater, "code-later", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "Your code goes into what you save from now on. This recording began without it.")},
     {Notice::burMissing, "bur-missing", Kind::warning,

@@ -43,6 +43,8 @@ enum class Notice {
     hullNeedsWholeTooth,
     settingsBroken,
     crashed,
+    crashedNoRoom,
+    onlyTouch,
     codeLater,
     burMissing,
     burLocked,

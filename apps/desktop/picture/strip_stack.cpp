@@ -11,6 +11,14 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr int kSide = 12, kBetween = 6, kWidest = 760;
+// In the picture's lower corners stand its scale and its legend: what comes below stands between them, or over them
+// where the picture is too narrow for that.
+constexpr int kScaleWide = 250, kLegendWide = 150, kCornersHigh = 130, kNarrowest = 340;
+
+int heightOf(QWidget* strip, int width) {
+    if (strip->layout()) strip->layout()->activate();
+    return strip->hasHeightForWidth() ? strip->heightForWidth(width) : strip->sizeHint().height();
+}
 
 }  // namespace
 
@@ -18,7 +26,7 @@ StripStack::StripStack(QWidget* picture) : QObject(picture), picture_(picture) {
     picture_->installEventFilter(this);
 }
 
-void StripStack::add(QWidget* strip) {
+void StripStack::add(QWidget* strip, Where where) {
     const bool shown = !strip->isHidden();
     strip->setParent(picture_);
     // A press on a message is none on the tooth under it.
@@ -26,7 +34,7 @@ void StripStack::add(QWidget* strip) {
     strip->setCursor(Qt::ArrowCursor);
     strip->setVisible(shown);
     strip->installEventFilter(this);
-    strips_ << strip;
+    (where == Where::above ? strips_ : below_) << strip;
     place();
 }
 
@@ -38,7 +46,7 @@ void StripStack::setTop(int pixels) {
 
 std::vector<QRectF> StripStack::covered() const {
     std::vector<QRectF> places;
-    for (const QWidget* strip : strips_)
+    for (const QWidget* strip : strips_ + below_)
         if (!strip->isHidden()) places.emplace_back(strip->geometry());
     return places;
 }
@@ -64,11 +72,27 @@ void StripStack::place() {
     int y = top_;
     for (QWidget* strip : strips_) {
         if (strip->isHidden()) continue;
-        if (strip->layout()) strip->layout()->activate();
-        const int height = strip->hasHeightForWidth() ? strip->heightForWidth(width) : strip->sizeHint().height();
+        const int height = heightOf(strip, width);
         strip->setGeometry((picture_->width() - width) / 2, y, width, height);
         strip->raise();
         y += height + kBetween;
+    }
+    placeBelow();
+}
+
+void StripStack::placeBelow() {
+    const int between = picture_->width() - kScaleWide - kLegendWide;
+    const bool fits = between >= kNarrowest;
+    const int width = std::min(fits ? between : picture_->width() - 2 * kSide, kWidest);
+    const int x = fits ? kScaleWide + (between - width) / 2 : (picture_->width() - width) / 2;
+    int y = picture_->height() - (fits ? kSide : kCornersHigh);
+    for (QWidget* strip : below_) {
+        if (strip->isHidden()) continue;
+        const int height = heightOf(strip, width);
+        y -= height;
+        strip->setGeometry(x, y, width, height);
+        strip->raise();
+        y -= kBetween;
     }
 }
 

@@ -17,9 +17,11 @@ namespace handpiece::desktop {
 class StripStack : public QObject {
     Q_OBJECT
   public:
+    /// Below is for what stays: the crown that is worked on lies in the upper part of the picture.
+    enum class Where { above, below };
     explicit StripStack(QWidget* picture);
     /// Becomes a child of the picture, under those that are there; while it is hidden the next one takes its place.
-    void add(QWidget* strip);
+    void add(QWidget* strip, Where where = Where::above);
     /// Pixels that stay free above them.
     void setTop(int pixels);
     /// Where in the picture those that are shown lie.
@@ -30,9 +32,10 @@ class StripStack : public QObject {
 
   private:
     void place();
+    void placeBelow();
 
     QWidget* picture_;
-    QList<QWidget*> strips_;
+    QList<QWidget*> strips_, below_;
     int top_ = 0;
 };
 

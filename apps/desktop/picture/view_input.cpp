@@ -275,7 +275,7 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
     s.last = event->position();
     s.pointer = event->position();
     s.cross.reset();
-    if (s.drag != Drag::none || !s.tooth) return;
+    if (s.drag != Drag::none || !(s.tooth || s.isSketch)) return;
     const Binding binding{Binding::Kind::button, static_cast<int>(event->button()),
                           event->modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)};
     const auto action = s.bindings.actionFor(binding);
@@ -284,7 +284,7 @@ void ViewWidget::mousePressEvent(QMouseEvent* event) {
         s.begin(*action == Action::orbit ? Drag::orbit : Drag::pan, binding);
         return;
     }
-    if (*action != Action::cut && *action != Action::touch) return;
+    if (!s.tooth || (*action != Action::cut && *action != Action::touch)) return;
     if (const auto handle = sectionHandle(s.overlay(), s.viewport())) {
         const core::Vec2 at = s.pixel(event->position());
         if (std::hypot(at.x() - handle->x(), at.y() - handle->y()) < kHandleReach) {
@@ -352,7 +352,7 @@ void ViewWidget::State::turnWheel(const QWheelEvent& event) {
     const double turned = (event.angleDelta().y() != 0 ? event.angleDelta().y() : event.angleDelta().x()) / 120.0;
     const auto action =
         bindings.actionFor({Binding::Kind::wheel, 0, event.modifiers() & (Qt::ShiftModifier | Qt::ControlModifier)});
-    if (!action || !tooth || turned == 0.0) return;
+    if (!action || !(tooth || isSketch) || turned == 0.0) return;
     if (*action == Action::zoom && tool != Tool::section && tool != Tool::mirror) {
         zoomBy(turned, event.position());
         return;

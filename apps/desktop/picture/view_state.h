@@ -7,6 +7,7 @@
 #include <QPointer>
 #include <QTimer>
 #include <atomic>
+#include <utility>
 
 #include "desktop/picture/help_card.h"
 #include "desktop/picture/overlay.h"
@@ -41,6 +42,8 @@ struct ViewWidget::State {
     QString problem, remedy;  // why nothing is drawn
     QString waiting;          // for what, while there is no tooth
     bool isSketch = false;
+    view::Camera firstEye;                 // as it was first seen
+    std::optional<view::Camera> movedEye;  // as a person turned it, for what comes next
     std::optional<Frame> frame;
     bool everPressed = false, everTurned = false;
 
@@ -102,6 +105,12 @@ struct ViewWidget::State {
     [[nodiscard]] std::optional<view::MirrorPose> mirrorPose() const;
     [[nodiscard]] core::Vec3 burAxis() const;
 
+    void takeKeptEye() {  // that was moved while there was only a sketch
+        if (const auto moved = std::exchange(movedEye, std::nullopt)) {
+            camera = *moved;
+            eyeMoved();
+        }
+    }
     void turnHalf();    // the eye, for two pictures or for one again
     void wish();        // tells the drawing thread what is to be seen
     void eyeMoved();    // and the hand, and listeners

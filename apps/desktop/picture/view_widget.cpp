@@ -60,12 +60,15 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed));
     s.probe->setTooth(s.tooth);
     showStandardView(view::StandardView::oblique);
+    s.firstEye = s.camera;
+    s.takeKeptEye();
     s.layOut();
 }
 
 void ViewWidget::showSketch(const cases::Case& sketch) {
-    clearTooth();
     State& s = *state_;
+    if (!s.isSketch) s.movedEye.reset();  // of another tooth
+    clearTooth();
     core::Box bounds;
     std::vector<cases::Part> shown;
     for (const cases::Part& part : sketch.parts) {
@@ -85,7 +88,14 @@ void ViewWidget::showSketch(const cases::Case& sketch) {
     s.take(sketch, bounds);
     s.render->setTooth(nullptr, {}, std::move(shown), nullptr);
     showStandardView(view::StandardView::oblique);
+    s.firstEye = s.camera;
+    s.takeKeptEye();
     s.layOut();
+}
+
+void ViewWidget::keepEye() {
+    State& s = *state_;
+    if (s.camera.eyeMm != s.firstEye.eyeMm || s.camera.targetMm != s.firstEye.targetMm) s.movedEye = s.camera;
 }
 
 bool ViewWidget::hasSketch() const {
@@ -99,6 +109,7 @@ void ViewWidget::setWaiting(const QString& forWhat) {
 
 void ViewWidget::clearTooth() {
     State& s = *state_;
+    if (s.isSketch) keepEye();
     s.isSketch = false;
     setPointer(nullptr, {});
     setSection(std::nullopt);
@@ -253,8 +264,8 @@ void ViewWidget::setSectionBarShown(bool shown) {
     state_->layOut();
 }
 
-void ViewWidget::addStrip(QWidget* strip) {
-    state_->strips->add(strip);
+void ViewWidget::addStrip(QWidget* strip, StripStack::Where where) {
+    state_->strips->add(strip, where);
 }
 
 void ViewWidget::setLoad(double loadN) {

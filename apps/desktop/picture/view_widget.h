@@ -15,6 +15,7 @@
 #include "desktop/picture/latency.h"
 #include "desktop/picture/measuring.h"
 #include "desktop/picture/overlay.h"
+#include "desktop/picture/strip_stack.h"
 #include "handpiece/app/exercise/permissions.h"
 #include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/app/input/working_position.h"
@@ -46,9 +47,12 @@ class ViewWidget : public QWidget {
     /// in a replay, where setSample() says where the bur is. Takes pointer and measurements away, fits the camera.
     void setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
                   std::shared_ptr<simulation::SampleFeed> feed);
-    /// Something to look at until the tooth is there: nothing of it can be touched.
+    /// Something to look at and to turn until the tooth is there. An eye that was moved stays where it is, also for the
+    /// tooth itself.
     void showSketch(const cases::Case& sketch);
     [[nodiscard]] bool hasSketch() const;
+    /// The next tooth is looked at as this one is, where somebody turned it.
+    void keepEye();
     /// What is said where there is no tooth yet; empty: that none is open.
     void setWaiting(const QString& forWhat);
     void clearTooth();
@@ -118,7 +122,7 @@ class ViewWidget : public QWidget {
     /// The bar by which a section is placed; without it somebody else has such controls.
     void setSectionBarShown(bool shown);
     /// Shown over the picture, which keeps its size: messages, progress.
-    void addStrip(QWidget* strip);
+    void addStrip(QWidget* strip, StripStack::Where where = StripStack::Where::above);
 
     // The pointer's settings.
 

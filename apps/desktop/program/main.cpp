@@ -4,6 +4,7 @@
 #include "desktop/framework/application.h"
 #include "desktop/program/hand_map.h"
 #include "desktop/program/host.h"
+#include "desktop/program/prepared_list.h"
 #include "desktop/program/widget_map.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/senses/sound/player.h"
@@ -22,6 +23,8 @@ int main(int argc, char** argv) {
         std::printf("%s", line.help ? qPrintable(desktop::usage()) : "handpiece-desktop " HANDPIECE_VERSION "\n");
         return 0;
     }
+    prepared::use(prepared::installedFolder(), prepared::list(),
+                  [](const std::string& problem) { std::fprintf(stderr, "handpiece-desktop: %s\n", problem.c_str()); });
     // It sets the environment for a moment: before any thread.
     if (line.sound) sound::preferLowLatency();
     // Qt would abort, with a core dump.

@@ -416,6 +416,22 @@
         <translation>どのキーで何ができるかを表示します</translation>
     </message>
     <message>
+        <source>First steps again</source>
+        <translation>最初のヒントをもう一度</translation>
+    </message>
+    <message>
+        <source>Show the hints of the first minute again, from the first</source>
+        <translation>最初の操作のヒントを、もう一度はじめから表示します</translation>
+    </message>
+    <message>
+        <source>User guide</source>
+        <translation>使い方の手引き</translation>
+    </message>
+    <message>
+        <source>Read how everything is done, chapter by chapter</source>
+        <translation>使い方を章ごとに読めます</translation>
+    </message>
+    <message>
         <source>About Handpiece</source>
         <translation>Handpiece について</translation>
     </message>
@@ -1482,6 +1498,14 @@
     <message>
         <source>The last session ended without saving. What was cut of &quot;%1&quot; can be brought back, now or later with File, Recover.</source>
         <translation>前回は保存されずに終わりました。切削した「%1」を、今すぐ、または後で「ファイル」の「復元」から復元できます。</translation>
+    </message>
+    <message>
+        <source>The last session ended without saving, and the disk is full: &quot;%1&quot; can be brought back once %2 MB are free where %3 is (now %4 MB). Nothing is lost. Make room, then try again.</source>
+        <translation>前回は保存されずに終わりましたが、ディスクの空きが足りません。%3 のあるディスクに %2 MB の空きができれば（現在 %4 MB）「%1」を復元できます。失われたものはありません。空きをつくってから、もう一度お試しください。</translation>
+    </message>
+    <message>
+        <source>The tooth can be touched now, and cut once it is prepared (%1 % done).</source>
+        <translation>今は歯に触れることができます。準備ができれば切削できます（%1 % 完了）。</translation>
     </message>
     <message>
         <source>Your code goes into what you save from now on. This recording began without it.</source>
@@ -4185,6 +4209,41 @@
     </message>
 </context>
 <context>
+    <name>handpiece::desktop::GuideDialog</name>
+    <message>
+        <source>User guide</source>
+        <translation>使い方の手引き</translation>
+    </message>
+    <message>
+        <source>Find in the guide</source>
+        <translation>手引きの中を探す</translation>
+    </message>
+    <message>
+        <source>Type a word; Enter finds the next place</source>
+        <translation>語を入力します。Enter で次の箇所に進みます</translation>
+    </message>
+    <message>
+        <source>Chapters</source>
+        <translation>章</translation>
+    </message>
+    <message>
+        <source>Go to this chapter</source>
+        <translation>この章に移ります</translation>
+    </message>
+    <message>
+        <source>That page is in the package handpiece-doc: %1</source>
+        <translation>そのページはパッケージ handpiece-doc にあります: %1</translation>
+    </message>
+    <message>
+        <source>No program here opens %1</source>
+        <translation>%1 を開くプログラムがありません</translation>
+    </message>
+    <message>
+        <source>Not found: %1</source>
+        <translation>見つかりません: %1</translation>
+    </message>
+</context>
+<context>
     <name>handpiece::desktop::HelpCard</name>
     <message>
         <source>%1: %2</source>
@@ -4591,6 +4650,10 @@ openhaptics:Left Arm, or forcedimension:2</source>
 </context>
 <context>
     <name>handpiece::desktop::FilesFeature</name>
+    <message>
+        <source>Recording of %1, %2</source>
+        <translation>%1 の記録（%2）</translation>
+    </message>
     <message>
         <source>Open recent</source>
         <translation>最近使ったファイル</translation>

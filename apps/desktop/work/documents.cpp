@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <utility>
 
 #include "handpiece/app/course/kept_cases.h"
 #include "handpiece/app/exercise/permissions.h"
@@ -14,6 +15,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/work_on.h"
+#include "handpiece/model/tooth/kept_model.h"
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/senses/surface/brick_source.h"
 #include "handpiece/senses/surface/closed_surface.h"
@@ -81,6 +83,28 @@ void takeTissues(simulation::SimulationSettings& settings, const cases::Case& to
 
 void tell(const LoadListener& listener, LoadStep step) {
     if (listener.step) listener.step(step);
+}
+
+/// Voxel of a tooth that is only touched: what it rests on is asked of the triangles.
+constexpr double kTouchVoxelMm = 0.1;
+
+void offerTouch(const cases::Tooth& tooth, const LoadRequest& request, const core::Progress& progress,
+                const LoadListener& listener) {
+    auto made = std::make_shared<Touchable>();
+    auto alone = std::make_shared<cases::Case>();
+    static_cast<cases::Tooth&>(*alone) = tooth;
+    simulation::SimulationSettings settings = request.settings;
+    settings.field = simulation::fieldSettingsAt(kTouchVoxelMm);
+    settings.hull = settings.resumed = false;
+    takeTissues(settings, *alone);
+    try {
+        made->station = simulation::makeSimulation(*alone, std::move(settings), false, progress);
+        made->liveTooth = std::make_shared<simulation::LiveTooth>(made->station, tooth::StateDelta{}, progress);
+    } catch (const core::Error&) {
+        return;  // whatever it is, the tooth itself tells it when its turn comes
+    }
+    made->toothCase = std::move(alone);
+    listener.touchable(std::move(made));
 }
 
 void lockHelps(tasks::Task& task) {
@@ -195,7 +219,9 @@ cases::Case starterCase(const Starter& starter, const fs::path& folder, const co
     cases::Case tooth = course::keptTooth(starter.fdi, starter.patient, starter.faces, folder,
                                           core::part(progress, 0.0, toothShare), hears);
     if (!starter.inMouth) return tooth;
-    if (isNew) show(tooth);
+    // Reading the mouth takes a while too: the tooth is seen meanwhile.
+    show(tooth);
+    if (isNew && listener.shaped) listener.shaped(tooth);
     hears.making = [&] { tell(listener, LoadStep::mouth); };
     cases::Case mouth =
         course::keptMouth(starter.fdi, starter.patient, folder, core::part(progress, toothShare, 1.0), hears);
@@ -211,8 +237,14 @@ instrument::Drive driveAt(const std::string& name, double speedRpm) {
     return drive;
 }
 
-LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress, const LoadListener& listener) {
+LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress, const LoadListener& told) {
     LoadedTooth loaded;
+    LoadListener listener = told;
+    listener.shaped = [&, isOffered = false](const cases::Tooth& tooth) mutable {
+        // The bar stands still meanwhile, which is a second.
+        const core::Progress still = [&](double) { return !progress || progress(0.0); };
+        if (told.touchable && !std::exchange(isOffered, true)) offerTouch(tooth, request, still, told);
+    };
     tell(listener, request.recover ? LoadStep::recovering : LoadStep::reading);
     simulation::SimulationSettings settings = request.settings;
     std::optional<cases::Attempt> attempt;
@@ -301,6 +333,9 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
         takeInstruments(loaded, settings, request, attempt ? &*attempt : nullptr);
     }
     settings.resumed = attempt || recovered;
+    if (!settings.resumed && settings.field.voxelMm < kTouchVoxelMm &&
+        !tooth::isKept(*loaded.toothCase, {settings.field, settings.cut, request.useCache}))
+        listener.shaped(*loaded.toothCase);
     std::atomic<bool> hasDistances{false};
     const core::Progress stepwise = [&](double fraction) {
         if (fraction >= tooth::kDistancesShare && !hasDistances.exchange(true)) tell(listener, LoadStep::tissues);

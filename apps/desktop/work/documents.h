@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "handpiece/app/course/first_mouth.h"
 #include "handpiece/app/simulation/history_bytes.h"
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
@@ -32,10 +33,10 @@ inline constexpr std::array<std::string_view, 7> kUnaidedLocks{
 
 /// A tooth that the program makes: one of the 32 of a patient.
 struct Starter {
-    int fdi = 46;
+    int fdi = course::kFirstFdi;
     dentition::Patient patient{};
-    std::size_t faces = 68151;  ///< of its surface: one of the five resolutions of the paper's Table II
-    bool inMouth = true;        ///< with the patient's other teeth, gingiva and bone; else alone
+    std::size_t faces = course::kFirstFaces;  ///< of its surface: one of the five resolutions of the paper's Table II
+    bool inMouth = true;                      ///< with the patient's other teeth, gingiva and bone; else alone
     friend bool operator==(const Starter&, const Starter&) = default;
 };
 struct Resolution {
@@ -75,11 +76,22 @@ struct Document {
 
 /// What is being done for a tooth that opens, for people.
 enum class LoadStep { reading, recovering, shaping, mouth, distances, tissues, surface };
+/// A tooth that is not ready to be cut, ready to be touched: its mesh felt exactly, the field around it coarse.
+struct Touchable {
+    std::shared_ptr<const cases::Case> toothCase;  ///< alone
+    simulation::SimulationSetup station;
+    std::shared_ptr<simulation::LiveTooth> liveTooth;
+};
+
 /// Hears of it on the thread that loads.
 struct LoadListener {
     std::function<void(LoadStep step)> step;
     /// Something to look at before there is anything to feel: its parts and what stands around them.
     std::function<void(std::shared_ptr<const cases::Case> sketch)> sketch;
+    /// The tooth that comes, to be touched until it can be cut. Once, and not where that takes no time.
+    std::function<void(std::shared_ptr<Touchable> touchable)> touchable;
+    /// It has its shape; the mouth around it is yet to be made.
+    std::function<void(const cases::Tooth& tooth)> shaped;
     /// What was kept at `place` is damaged or not what its name says: it is made anew.
     std::function<void(const std::filesystem::path& place)> renewed;
     /// What was made cannot be kept at `place`: a full disk, a folder that is read only.

@@ -7,7 +7,11 @@
 #include <QJsonArray>
 #include <QJsonDocument>
 #include <QJsonObject>
+#include <QSysInfo>
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <limits>
 
 #include "desktop/framework/problem.h"
 #include "handpiece/base/core/error.h"
@@ -22,11 +26,19 @@ fs::path beside(const fs::path& session, const char* extension) {
     return fs::path(session).replace_extension(extension);
 }
 
-/// Held by a program that lives. A lock of one that died is taken over and given back.
+/// Held by a program that lives. A lock of one that died is taken over and given back. Where none can be made, on a
+/// full disk, that says nothing of anybody: what a program that died left is offered all the same.
 bool isAlive(const fs::path& session) {
     QLockFile lock(toQString(beside(session, ".lock")));
     lock.setStaleLockTime(0);
-    if (!lock.tryLock(0)) return true;
+    if (!lock.tryLock(0)) {
+        qint64 pid = 0;
+        QString host, name;
+        if (lock.error() != QLockFile::LockFailedError) return false;
+        // To take over what a dead program left needs room as well.
+        const bool isKnown = lock.getLockInfo(&pid, &host, &name) && host == QSysInfo::machineHostName();
+        return !isKnown || QFile::exists(QStringLiteral("/proc/%1").arg(pid));
+    }
     lock.unlock();
     return false;
 }
@@ -111,9 +123,24 @@ void SessionShelf::goOn(const fs::path& session) {
 void SessionShelf::take(const fs::path& session) {
     auto lock = std::make_unique<QLockFile>(toQString(beside(session, ".lock")));
     lock->setStaleLockTime(0);
-    if (!lock->tryLock(0)) throw core::Error("the recording's place is taken", session.string(), "start again");
+    if (!lock->tryLock(0)) {
+        if (isAlive(session)) throw core::Error("the recording's place is taken", session.string(), "start again");
+        const int why = hasRoom() ? EACCES : ENOSPC;
+        throw core::Error(std::strerror(why), session.string(), "make room, or check the folder's permissions")
+            .as(core::writeErrorId(why), {std::strerror(why)});
+    }
     current_ = session;
     lock_ = std::move(lock);
+}
+
+std::uint64_t SessionShelf::freeBytes() const {
+    // A folder that is yet to be made lies where the first one above it does.
+    fs::path there = folder_;
+    std::error_code error;
+    while (!fs::exists(there, error) && there.has_relative_path())
+        there = there.parent_path();
+    const fs::space_info space = fs::space(there, error);
+    return error ? std::numeric_limits<std::uint64_t>::max() : space.available;
 }
 
 void SessionShelf::note(const SessionNote& note) {

@@ -44,6 +44,7 @@ class SessionShelf {
     struct Limits {
         std::size_t sessions = 20;
         std::uint64_t bytes = 2ull << 30;
+        std::uint64_t roomBytes = 40ull << 20;  ///< that work which goes on must find free: half an hour's recording
     };
     explicit SessionShelf(std::filesystem::path folder);
     SessionShelf(std::filesystem::path folder, Limits limits);
@@ -69,6 +70,10 @@ class SessionShelf {
     [[nodiscard]] std::vector<Crashed> crashed() const;
     /// Recordings of exams that were not settled and that no program has under way, the newest first.
     [[nodiscard]] std::vector<Crashed> ofExams() const;
+    /// Free where recordings lie, and whether that is enough to go on with one.
+    [[nodiscard]] std::uint64_t freeBytes() const;
+    [[nodiscard]] std::uint64_t roomBytes() const noexcept { return limits_.roomBytes; }
+    [[nodiscard]] bool hasRoom() const { return freeBytes() >= limits_.roomBytes; }
     /// Its work is saved elsewhere by now, or given up: it becomes a recording like any other.
     void settle(const std::filesystem::path& session);
     /// Deletes the oldest recordings beyond the limits, never one with a marker. Returns how many.

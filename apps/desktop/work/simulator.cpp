@@ -61,6 +61,7 @@ Simulator::Simulator(const Options& options, QObject* parent)
 Simulator::~Simulator() {
     soundJob_.reset();
     job_.reset();
+    touch_.reset();
     stopAll();
 }
 
@@ -251,6 +252,7 @@ void Simulator::stopAll(bool keepsReview) {
 void Simulator::close() {
     waiting_ = {};
     job_.reset();
+    touch_.reset();
     stopAll();
     document_ = {};
     toothCase_.reset();
@@ -363,6 +365,7 @@ void Simulator::setBur(const QString& nameOrFile) {
         settings_.cuttingParameters = std::move(made.cuttingParameters);
         burName_ = nameOrFile;
         if (mayWork()) liveSession_->setBur(settings_.bur, settings_.cuttingParameters);
+        if (touch_) touch_->session->setBur(settings_.bur, settings_.cuttingParameters);
         tellDrill();
     } catch (const core::Error& error) {
         emit failed(problemOf(error));

@@ -99,6 +99,17 @@ class Simulator : public QObject {
     /// Work that a crash left behind, the newest first.
     [[nodiscard]] std::vector<Crashed> crashed() const { return shelf_.crashed(); }
 
+    /// While the tooth that comes cannot be cut yet: it can be touched, with the mouse. Nothing of it is recorded.
+    struct Touch {
+        std::shared_ptr<Touchable> of;
+        std::unique_ptr<simulation::LiveSession> session;
+        std::shared_ptr<simulation::SampleFeed> feed;
+        std::shared_ptr<device::PointerMailbox> mailbox;
+        core::Pose startPose;
+    };
+    /// Null while there is none.
+    [[nodiscard]] const Touch* touch() const noexcept { return touch_.get(); }
+
     // Documents. A new one takes the place of the old one once it is ready: whoever calls asks about unsaved work
     // first.
 
@@ -154,6 +165,8 @@ class Simulator : public QObject {
     void pause(bool isPaused) { isPaused_->store(isPaused, std::memory_order_relaxed); }
 
     void recover(const Crashed& crashed, std::function<void()> then = {});
+    /// The recordings, and how much room there is for them.
+    [[nodiscard]] const SessionShelf& shelf() const noexcept { return shelf_; }
     /// Gives up what a crash left behind; the recording itself stays for a while.
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
     void forget(const Finished& done) { shelf_.settle(done.work.session); }
@@ -265,6 +278,8 @@ class Simulator : public QObject {
     void jobStepped(const QString& step);
     /// While nothing is open: the tooth that comes, to be looked at.
     void sketched(const std::shared_ptr<const handpiece::cases::Case>& sketch);
+    /// While nothing is open: touch() is there, until jobEnded(), after which nothing of it may be used.
+    void touchBegan();
     void jobProgressed(double fraction);
     void jobEnded();
     /// About 30 times a second: sample() and status() are new.
@@ -294,6 +309,7 @@ class Simulator : public QObject {
     void goOn();
     void load(LoadRequest request, const QString& title, std::function<void()> done = {});
     [[nodiscard]] LoadListener loadListener();
+    void beginTouch(std::shared_ptr<Touchable> of);
     [[nodiscard]] static QString stepText(LoadStep step);
     void loadFor(LoadRequest request, const QString& title, std::function<void(LoadedTooth)> then);
     void showReviewed();
@@ -361,6 +377,7 @@ class Simulator : public QObject {
     std::unique_ptr<sound::Player> player_;
     std::shared_ptr<Ear> ear_;
     std::unique_ptr<simulation::LiveSession> liveSession_;
+    std::unique_ptr<Touch> touch_;
     std::unique_ptr<ReplayDriver> replay_;
     std::unique_ptr<Job> job_, soundJob_;
     int loads_ = 0;

@@ -56,6 +56,28 @@ std::unique_ptr<device::Device> Simulator::takeHandpiece() {
         isTimeOver_, isPaused_);
 }
 
+/// The mouse's hand, its pedal dead: a sitting like any other that cuts and records nothing.
+void Simulator::beginTouch(std::shared_ptr<Touchable> of) {
+    if (mode_ != Mode::empty || !job_ || touch_ || exam_) return;
+    auto touch = std::make_unique<Touch>();
+    const cases::Case& toothCase = *of->toothCase;
+    touch->startPose = input::startPose(boundsOf(toothCase), toothCase.fdiNumber, toothCase.buccalSign);
+    touch->mailbox = std::make_shared<device::PointerMailbox>();
+    const auto never = std::make_shared<std::atomic<bool>>(true);
+    auto hand = std::make_unique<EndingDevice>(
+        std::make_unique<device::PointerDevice>(device::PointerHandSettings{}, touch->mailbox, touch->startPose), never,
+        never);
+    of->station.settings.capability = hand->capability();
+    simulation::LiveSessionSettings settings;
+    settings.realTime = options_.realTime;
+    touch->session =
+        std::make_unique<simulation::LiveSession>(of->station, toothCase, std::move(hand), settings, of->liveTooth);
+    touch->feed = touch->session->subscribe();
+    touch->of = std::move(of);
+    touch_ = std::move(touch);
+    emit touchBegan();
+}
+
 /// The same tooth, as it is, in another hand: what was cut stays, with what can be undone.
 void Simulator::passHandpiece() {
     const std::shared_ptr<Hand> now = handLentAway_ ? nullptr : hands_.current();

@@ -18,6 +18,7 @@ void Simulator::start(const QString& title, Job::Work work, std::function<void()
     const auto end = [this] {
         job_.release()->deleteLater();
         emit jobEnded();
+        touch_.reset();
     };
     connect(job_.get(), &Job::progressed, this, &Simulator::jobProgressed);
     connect(job_.get(), &Job::done, this, [this, end, done = std::move(done)] {
@@ -119,6 +120,9 @@ LoadListener Simulator::loadListener() {
         tell([this, sketch = std::move(sketch)] {
             if (mode_ == Mode::empty) emit sketched(sketch);
         });
+    };
+    listener.touchable = [this, tell](std::shared_ptr<Touchable> touchable) {
+        tell([this, touchable = std::move(touchable)] { beginTouch(touchable); });
     };
     return listener;
 }
@@ -245,14 +249,15 @@ void Simulator::comeBack(const std::shared_ptr<Left>& left, std::function<void()
         });
 }
 
-/// What was brought back is in no file yet: the recording under way holds it, and says so.
+/// What was brought back is in no file yet: the recording under way holds it, and says so. Where none could go on, the
+/// one that was left keeps its marker.
 void Simulator::takeOver(const Crashed& file) {
     if (file.note.unsaved) {
         savedMm3_ = {};
         savedOthersMm3_ = 0.0;
         markUnsaved(true);
     }
-    if (file.session != shelf_.current()) shelf_.settle(file.session);
+    if (!shelf_.current().empty() && file.session != shelf_.current()) shelf_.settle(file.session);
 }
 
 void Simulator::replayThis() {

@@ -51,6 +51,13 @@ int BurModel::rowCount(const QModelIndex& parent) const {
 int BurModel::rowOf(const QString& name) const {
     for (std::size_t i = 0; i < rows_.size(); ++i)
         if (QString::fromStdString(rows_[i].entry.name) == name) return static_cast<int>(i);
+    // A recording names an own bur by its file alone: what is brought back has the same bur, not another.
+    const auto isPlain = [](const QString& of) { return !of.contains(QLatin1Char('/')); };
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+        const QString own = QString::fromStdString(rows_[i].entry.name);
+        if (rows_[i].own && isPlain(own) != isPlain(name) && burTitle(own) == burTitle(name))
+            return static_cast<int>(i);
+    }
     return -1;
 }
 

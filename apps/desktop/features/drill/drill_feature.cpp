@@ -2,6 +2,7 @@
 #include "desktop/features/drill/drill_feature.h"
 
 #include <QActionGroup>
+#include <QMouseEvent>
 #include <cmath>
 #include <numeric>
 
@@ -43,6 +44,9 @@ constexpr CommandOf<Command> kCommands[] = {
     {Command::bindings, "actionBindings", QT_TRANSLATE_NOOP("Commands", "Keys and mouse..."),
      QT_TRANSLATE_NOOP("Commands", "Choose which key or button does what"), "keyboard", "Ctrl+Shift+K",
      in(Shelf::tools, 20)},
+    {Command::firstSteps, "actionFirstSteps", QT_TRANSLATE_NOOP("Commands", "First steps again"),
+     QT_TRANSLATE_NOOP("Commands", "Show the hints of the first minute again, from the first"), "info", "Ctrl+Shift+F1",
+     in(Shelf::help, 1)},
 };
 
 }  // namespace
@@ -55,7 +59,7 @@ DrillFeature::DrillFeature(const FeatureContext& context)
       parameters_(new ParameterBox),
       welcome_(new WelcomeStrip) {
     addDocks();
-    view_.addStrip(welcome_);
+    view_.addStrip(welcome_, StripStack::Where::below);
     view_.setTurbine(instrument::turbineMesh());
     connectCommands();
     connectPanels();
@@ -120,6 +124,7 @@ void DrillFeature::connectCommands() {
     connect(commands_[Command::pedal], &QAction::triggered, &view_, &ViewWidget::latchPedal);
     connect(&view_, &ViewWidget::pedalLatched, commands_[Command::pedal], &QAction::setChecked);
     on(commands_[Command::bindings], [this] { editBindings(); });
+    on(commands_[Command::firstSteps], [this] { showFirstSteps(); });
 
     const auto enable = [this](Command command, auto can) {
         window_.commands().enableWhile(commands_[command], [this, can] {
@@ -133,6 +138,10 @@ void DrillFeature::connectCommands() {
     enable(Command::reset,
            [this, isFree](const Status& status) { return isFree(status) && (status.cut || view_.isBleeding()); });
     enable(Command::pedal, [](const Status&) { return true; });
+    window_.commands().enableWhile(commands_[Command::firstSteps], [this] {
+        return simulator_.mode() == Simulator::Mode::liveSession &&
+               simulator_.permissions().allows(Operation::guidance);
+    });
 }
 
 void DrillFeature::connectPanels() {
@@ -174,14 +183,31 @@ void DrillFeature::connectWelcome() {
         keep();
         settings_.set(QStringLiteral("window/welcomeClosed"), true);
     });
-    if (settings_.value(QStringLiteral("window/welcomeClosed")).toBool()) welcome_->hide();
+    // A step is done by the person's own hand: a view that is chosen, or comes with a tooth, moves the eye too.
+    view_.installEventFilter(this);
     connect(&view_, &ViewWidget::cameraChanged, this, [this] {
-        const double distanceMm = view_.camera().distanceMm();
-        if (eyeDistanceMm_ > 0.0 && view_.hasFocus())
-            tellStep(std::abs(distanceMm - eyeDistanceMm_) > 1e-6 ? WelcomeStrip::Step::zoom
-                                                                  : WelcomeStrip::Step::orbit);
-        eyeDistanceMm_ = distanceMm;
+        if (gesture_) tellStep(*gesture_);
     });
+}
+
+bool DrillFeature::eventFilter(QObject* watched, QEvent* event) {
+    using Step = WelcomeStrip::Step;
+    const auto note = [this](std::optional<Step> step) {
+        gesture_ = step;
+        QMetaObject::invokeMethod(
+            this, [this] { gesture_.reset(); }, Qt::QueuedConnection);
+    };
+    if (event->type() == QEvent::Wheel) note(Step::zoom);
+    if (event->type() == QEvent::MouseMove) {
+        hasMoved_ = true;
+        note(static_cast<QMouseEvent*>(event)->buttons() == Qt::NoButton ? std::nullopt : std::optional(Step::orbit));
+    }
+    return Feature::eventFilter(watched, event);
+}
+
+void DrillFeature::showFirstSteps() {
+    settings_.set(QStringLiteral("window/welcomeClosed"), false);
+    welcome_->beginAgain();
 }
 
 void DrillFeature::tellStep(WelcomeStrip::Step step) {
@@ -233,10 +259,12 @@ void DrillFeature::takeBackNotices(const messages::HapticSample& sample) {
 }
 
 void DrillFeature::showDocument() {
-    if (simulator_.tooth() && simulator_.toothCase()) {
+    const bool isOpen = simulator_.tooth() && simulator_.toothCase();
+    // Nobody cuts in a replay or a work that is looked at, nor before there is a tooth.
+    welcome_->setAllowed(isOpen && simulator_.mode() == Simulator::Mode::liveSession &&
+                         simulator_.permissions().allows(Operation::guidance));
+    if (isOpen) {
         const exercise::Permissions now = simulator_.permissions();
-        // Nobody cuts in a replay or a work that is looked at.
-        welcome_->setAllowed(now.allows(Operation::guidance) && simulator_.mode() == Simulator::Mode::liveSession);
         QStringList burs;
         for (const std::string& bur : now.burs())
             burs << QString::fromStdString(bur);
@@ -292,7 +320,9 @@ void DrillFeature::showTick() {
                             : status.cut    ? ParameterBox::Cutting::begun
                                             : ParameterBox::Cutting::none);
     if (simulator_.mode() != Simulator::Mode::liveSession) return;
-    if (sample.tick > 0 && sample.depthMm > -1.0) tellStep(WelcomeStrip::Step::hover);
+    // The bur comes to lie near the tooth by itself: with the mouse, only who moved it has moved over the tooth.
+    const bool byMouse = simulator_.mailbox() != nullptr;
+    if (sample.tick > 0 && sample.depthMm > -1.0 && (!byMouse || hasMoved_)) tellStep(WelcomeStrip::Step::hover);
     if ((sample.flags & messages::kCutting) != 0) tellStep(WelcomeStrip::Step::cut);
 }
 

@@ -17,10 +17,13 @@ class ParameterBox;
 class DrillFeature : public Feature {
     Q_OBJECT
   public:
-    enum class Command { undo, redo, reset, touch, cut, pedal, bindings };
+    enum class Command { undo, redo, reset, touch, cut, pedal, bindings, firstSteps };
     explicit DrillFeature(const FeatureContext& context);
     void showDocument() override;
     void showTick() override;
+
+  protected:
+    bool eventFilter(QObject* watched, QEvent* event) override;
 
   private:
     void addDocks();
@@ -31,6 +34,7 @@ class DrillFeature : public Feature {
     void editBindings();
     void setTouching(bool touching);
     void tellStep(WelcomeStrip::Step step);
+    void showFirstSteps();
     void showSettings();
     void keepSettings();
     void takeBackNotices(const messages::HapticSample& sample);
@@ -42,7 +46,8 @@ class DrillFeature : public Feature {
     WelcomeStrip* welcome_;
     bool wasOpen_ = false, wasCut_ = false;  ///< pulp and tooth, as last shown
     bool touching_ = false;
-    double eyeDistanceMm_ = 0.0;
+    bool hasMoved_ = false;                      ///< the mouse, over the picture
+    std::optional<WelcomeStrip::Step> gesture_;  ///< that is being dealt with: what moves the eye now
 };
 
 }  // namespace handpiece::desktop

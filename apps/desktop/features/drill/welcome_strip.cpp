@@ -67,6 +67,12 @@ void WelcomeStrip::setAllowed(bool allowed) {
     showNext();
 }
 
+void WelcomeStrip::beginAgain() {
+    done_.clear();
+    showNext();
+    emit doneChanged();
+}
+
 QString WelcomeStrip::text() const {
     for (const Step step : kOrder) {
         if (done_.contains(step)) continue;

@@ -11,7 +11,8 @@ class QToolButton;
 
 namespace handpiece::desktop {
 
-/// Shows what to do next until it was done once [welcomeStrip]. The window tells what was done and keeps it.
+/// Shows what to do next until it was done once [welcomeStrip], while it can be done. The window tells what was done
+/// and keeps it.
 class WelcomeStrip : public QWidget {
     Q_OBJECT
   public:
@@ -26,8 +27,11 @@ class WelcomeStrip : public QWidget {
     void markDone(Step step);
     /// With a device instead of the mouse the hints differ.
     void setPointerIsMouse(bool mouse);
-    /// An exercise may want none.
+    /// Nothing can be done before a tooth is there to be cut, and an exercise may want no hints: none until this says
+    /// so.
     void setAllowed(bool allowed);
+    /// All steps anew, from the first.
+    void beginAgain();
     [[nodiscard]] QString text() const;
 
   signals:
@@ -41,7 +45,7 @@ class WelcomeStrip : public QWidget {
     void showNext();
 
     std::set<Step> done_;
-    bool mouse_ = true, allowed_ = true;
+    bool mouse_ = true, allowed_ = false;
     QLabel *text_, *count_;
     QToolButton* close_;
 };

@@ -4,6 +4,7 @@
 #include <QDateTime>
 #include <QDir>
 #include <QFileInfo>
+#include <QLocale>
 #include <QMenu>
 #include <QMessageBox>
 #include <QPointer>
@@ -136,20 +137,44 @@ void FilesFeature::connectJobs() {
     JobStrip& job = window_.job();
     connect(&simulator_, &Simulator::jobStarted, this, [this, &job](const QString& title) {
         job.begin(title);
+        prepared_ = 0.0;
         view_.setWaiting(title + QStringLiteral(" ..."));
     });
     connect(&simulator_, &Simulator::jobStepped, &job, &JobStrip::setStep);
-    connect(&simulator_, &Simulator::sketched, this,
-            [this](const std::shared_ptr<const cases::Case>& sketch) { view_.showSketch(*sketch); });
+    connect(&simulator_, &Simulator::sketched, this, [this](const std::shared_ptr<const cases::Case>& sketch) {
+        simulator_.touch() ? showTouch(*sketch) : view_.showSketch(*sketch);
+    });
+    connect(&simulator_, &Simulator::touchBegan, this, [this] { showTouch(*simulator_.touch()->of->toothCase); });
     connect(&simulator_, &Simulator::jobProgressed, &job, &JobStrip::setFraction);
+    connect(&simulator_, &Simulator::jobProgressed, this, [this](double fraction) { prepared_ = fraction; });
+    connect(&view_, &ViewWidget::pressedChanged, this, [this](bool pressed) {
+        if (pressed && simulator_.touch())
+            window_.notices().tell(Notice::onlyTouch, {QString::number(static_cast<int>(100.0 * prepared_))});
+    });
     connect(&simulator_, &Simulator::jobEnded, this, [this, &job] {
         job.end();
         view_.setWaiting({});
-        if (view_.hasSketch()) view_.clearTooth();  // nothing came of it, or the tooth itself comes now
+        window_.notices().remove(Notice::onlyTouch);
+        // Nothing came of it, or the tooth itself comes now.
+        if (simulator_.touch()) view_.keepEye();
+        if (view_.hasSketch() || simulator_.touch()) view_.clearTooth();
     });
     connect(&job, &JobStrip::cancelRequested, &simulator_, &Simulator::cancelJob);
     window_.statusFields.push_back(
         [this](StatusFigures& figures) { figures.busy = simulator_.status().restoring || simulator_.isBusy(); });
+}
+
+/// The tooth that can be touched, in what is known of its surroundings.
+void FilesFeature::showTouch(const cases::Case& surroundings) {
+    const Simulator::Touch& touch = *simulator_.touch();
+    if (view_.hasTooth()) view_.keepEye();
+    view_.setTooth(touch.of->liveTooth, surroundings, touch.feed);
+    view_.setPointer(touch.mailbox, touch.startPose);
+    if (simulator_.bur()) view_.setBur(simulator_.bur());
+    // What the hints say cannot be done yet.
+    cases::Exercise withoutHints;
+    withoutHints.lockedHelps = {"guide"};
+    view_.setPermissions(exercise::permissionsOf(&withoutHints, exercise::WorkMode::work));
 }
 
 void FilesFeature::connectMessages() {
@@ -269,9 +294,21 @@ void FilesFeature::listRecent() {
     recent_->menuAction()->setEnabled(number > 0);
 }
 
+/// Of which tooth and when: the name of a recording's file says neither to a person.
+QString FilesFeature::recordingTitle() const {
+    const QFileInfo file(toQString(simulator_.document().caseFile));
+    QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
+    if (!when.isValid()) when = file.lastModified();
+    return tr("Recording of %1, %2")
+        .arg(toothName(simulator_.toothCase()->fdiNumber), QLocale().toString(when, QLocale::ShortFormat));
+}
+
 void FilesFeature::showTitle() {
     const Document& document = simulator_.document();
     QString name = QString::fromStdString(document.name);
+    if (simulator_.mode() == Simulator::Mode::replay && simulator_.toothCase() &&
+        document.caseFile.filename() == document.name)
+        name = recordingTitle();
     // A starter tooth has a name in every language until it is saved under one of the student's own.
     if (document.starter && document.attemptFile.empty() && simulator_.toothCase())
         name = toothName(simulator_.toothCase()->fdiNumber);

@@ -30,13 +30,16 @@ class FilesFeature : public Feature {
     void takeSaved(const QString& file);
     void writePicture();
     void listRecent();
+    [[nodiscard]] QString recordingTitle() const;
+    void showTouch(const cases::Case& surroundings);
     void showTitle();
     void offerToMend(ErrorDialog* dialog);
     void mend();
 
     CommandSet<Command> commands_;
     QMenu* recent_;
-    QString lastOpened_;  ///< or tried to
+    QString lastOpened_;     ///< or tried to
+    double prepared_ = 0.0;  ///< of the tooth that comes
 };
 
 }  // namespace handpiece::desktop

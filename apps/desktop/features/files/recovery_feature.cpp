@@ -35,7 +35,8 @@ RecoveryFeature::RecoveryFeature(const FeatureContext& context)
     window_.commands().enableWhile(commands_[Command::recover], [this] { return !simulator_.isBusy(); });
     connect(&window_, &MainWindow::greet, this, &RecoveryFeature::greet);
     connect(&window_.notices(), &Notices::remedyChosen, this, [this](Notice notice) {
-        if (notice == Notice::crashed && !crashed_.empty()) recover(crashed_.front());
+        const bool isOffered = notice == Notice::crashed || notice == Notice::crashedNoRoom;
+        if (isOffered && !crashed_.empty()) recover(crashed_.front());
     });
 }
 
@@ -43,10 +44,23 @@ void RecoveryFeature::greet() {
     Notices& notices = window_.notices();
     if (!settings_.setAside().isEmpty()) notices.tell(Notice::settingsBroken, {settings_.setAside()});
     crashed_ = simulator_.crashed();
-    if (!crashed_.empty()) notices.tell(Notice::crashed, {titleOf(crashed_.front().note)});
+    if (crashed_.empty() || !hasRoomFor(crashed_.front())) return;
+    notices.tell(Notice::crashed, {titleOf(crashed_.front().note)});
+}
+
+/// Brought back, work goes on in its recording: without room for that it would be lost with the next crash.
+bool RecoveryFeature::hasRoomFor(const Crashed& crashed) {
+    const SessionShelf& shelf = simulator_.shelf();
+    window_.notices().remove(Notice::crashedNoRoom);
+    if (shelf.hasRoom()) return true;
+    const auto megabytes = [](std::uint64_t bytes) { return QLocale().toString(qulonglong{bytes >> 20}); };
+    window_.notices().tell(Notice::crashedNoRoom, {titleOf(crashed.note), megabytes(shelf.roomBytes()),
+                                                   toQString(shelf.folder()), megabytes(shelf.freeBytes())});
+    return false;
 }
 
 void RecoveryFeature::recover(const Crashed& crashed) {
+    if (!hasRoomFor(crashed)) return;
     window_.whenMayLeave([this, crashed] { simulator_.recover(crashed); });
 }
 

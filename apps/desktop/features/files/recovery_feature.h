@@ -19,6 +19,7 @@ class RecoveryFeature : public Feature {
   private:
     void greet();
     void choose();
+    [[nodiscard]] bool hasRoomFor(const Crashed& crashed);
     void recover(const Crashed& crashed);
 
     CommandSet<Command> commands_;

@@ -3,12 +3,14 @@
 
 #include <QCryptographicHash>
 #include <QDockWidget>
+#include <QLocale>
 #include <QMenu>
 #include <QToolBar>
 #include <QToolButton>
 #include <algorithm>
 #include <cmath>
 
+#include "desktop/features/view/guide_dialog.h"
 #include "desktop/features/view/view_bar.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/icon_factory.h"
@@ -49,6 +51,9 @@ constexpr CommandOf<Command> kCommands[] = {
      in(Shelf::toolBar, 25), brief(QT_TRANSLATE_NOOP("Commands", "Compare")), kCheckable, Operation::compare},
     {Command::help, "actionHelp", QT_TRANSLATE_NOOP("Commands", "Keys and mouse at a glance"),
      QT_TRANSLATE_NOOP("Commands", "Show which key does what"), "help", "F1", in(Shelf::help, 0)},
+    {Command::guide, "actionGuide", QT_TRANSLATE_NOOP("Commands", "User guide"),
+     QT_TRANSLATE_NOOP("Commands", "Read how everything is done, chapter by chapter"), "report", "Ctrl+F1",
+     in(Shelf::help, 2)},
 };
 constexpr std::pair<Command, view::StandardView> kViews[] = {
     {Command::occlusal, view::StandardView::occlusal}, {Command::buccal, view::StandardView::buccal},
@@ -101,6 +106,12 @@ ViewFeature::ViewFeature(const FeatureContext& context)
     connect(&simulator_, &Simulator::wasReset, &view_, &ViewWidget::clearBlood);
     connect(&view_, &ViewWidget::helpRequested, &view_, &ViewWidget::toggleHelpCard);
     on(commands_[Command::help], [this] { view_.toggleHelpCard(); });
+    on(commands_[Command::guide], [this] {
+        auto* guide = new GuideDialog(
+            QLocale().language() == QLocale::Japanese ? QStringLiteral("ja") : QStringLiteral("en"), &window_);
+        guide->setAttribute(Qt::WA_DeleteOnClose);
+        guide->show();
+    });
     connect(&view_, &ViewWidget::openGlMissing, this,
             [this](const QString& what, const QString&) { window_.notices().tell(Notice::openGlMissing, {what}); });
     connect(&view_, &ViewWidget::frameDrawn, this, [this] {

@@ -15,7 +15,20 @@ class ViewBar;
 class ViewFeature : public Feature {
     Q_OBJECT
   public:
-    enum class Command { occlusal, buccal, lingual, mesial, distal, oblique, fit, goToBur, mirror, compare, help };
+    enum class Command {
+        occlusal,
+        buccal,
+        lingual,
+        mesial,
+        distal,
+        oblique,
+        fit,
+        goToBur,
+        mirror,
+        compare,
+        help,
+        guide
+    };
     explicit ViewFeature(const FeatureContext& context);
     void showDocument() override;
 

@@ -3,7 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/model/case/as_written.h"
+#include "handpiece/model/case/packed_case.h"
 #include "handpiece/model/case/work_on.h"
 #include "handpiece/model/dentition/arch.h"
 #include "handpiece/model/dentition/mouth.h"
@@ -12,6 +16,7 @@ namespace handpiece::course {
 namespace {
 
 namespace fs = std::filesystem;
+constexpr const char* kPacked = ".packed-case";
 
 cases::Case kept(const fs::path& place, const std::function<bool(const cases::Case&)>& isIt,
                  const std::function<cases::Case()>& make, const KeptListener& listener) {
@@ -25,8 +30,16 @@ cases::Case kept(const fs::path& place, const std::function<bool(const cases::Ca
         if (listener.renewed) listener.renewed(place);
         fs::remove_all(place, error);
     }
+    // What the packages bring is used where it lies: there is nothing to keep.
+    const std::string name = place.filename().string() + kPacked;
+    if (const auto packed = prepared::read(name)) {
+        if (std::optional<cases::Case> found = cases::unpackCase(*packed, place); found && isIt(*found))
+            return std::move(*found);
+        prepared::refuse(name);
+    }
     if (listener.making) listener.making();
     const cases::Case made = make();
+    if (prepared::isCollecting()) prepared::keep(name, cases::packCase(made));
     try {
         fs::create_directories(place.parent_path(), error);
         cases::writeCase(made, place);

@@ -4,6 +4,7 @@
 /// Fills a DistanceField: lays out the grid, stores the bricks the band passes through, and computes their nodes.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -26,10 +27,19 @@ class FieldBuilder {
     /// The field of a closed, outward-facing surface: node values exact to float from its triangles, tissues from
     /// `parts` (none: all enamel). Runs on all threads; the same bits at any number of them and at every SIMD level.
     /// Throws core::Error when the finished field disagrees with the surface's volume or area by more than 1 %.
+    /// `nearest`, where wanted: for fromNearest().
     [[nodiscard]] static DistanceField fromSurface(const geometry::TriangleMesh& mesh,
                                                    const geometry::TriangleTree& tree,
                                                    std::span<const PartSurface> parts, const FieldSettings& settings,
-                                                   const core::Progress& progress = {});
+                                                   const core::Progress& progress = {},
+                                                   std::vector<std::uint32_t>* nearest = nullptr);
+    /// The same from what fromSurface() wrote into `nearest`, without a search: of every node of a stored brick the
+    /// triangle that its distance is of, geometry::kNoTriangle where the node is another brick's. `coarse` are the
+    /// distances at the bricks' centres; tissues are none. Nothing where it does not fit the grid or the surface.
+    [[nodiscard]] static std::optional<FieldStorage> fromNearest(const geometry::TriangleTree& tree,
+                                                                 const FieldSettings& settings,
+                                                                 std::vector<float> coarse,
+                                                                 std::span<const std::uint32_t> nearest);
 
     /// The empty grid that fromSurface() fills, for a surface of these bounds. Throws as the constructor.
     [[nodiscard]] static FieldBuilder around(const core::Box& surface, const FieldSettings& settings);

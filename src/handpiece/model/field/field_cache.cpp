@@ -20,6 +20,7 @@
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/field/field_builder.h"
+#include "handpiece/model/field/stored_tissues.h"
 
 namespace handpiece::field {
 namespace fs = std::filesystem;
@@ -29,7 +30,6 @@ namespace {
 constexpr std::uint32_t kVersion = 2;
 constexpr std::uint32_t kByteOrder = 0x01020304;
 constexpr char kMagic[8] = {'H', 'P', 'F', 'I', 'E', 'L', 'D', '\n'};
-constexpr std::uint8_t kMixedTissues = 255;
 
 /// The first bytes of a file; everything in the writer's byte order, which the reader checks.
 struct Header {
@@ -62,10 +62,8 @@ constexpr double kRoundingMm = 1e-5;
 class FieldFile {
   public:
     /// The payload's sections in file order.
-    struct Sections {
+    struct Sections : StoredTissues {
         FieldStorage field;
-        /// At every brick's centre; one a stored brick, or all nodes of the mixed ones.
-        std::vector<std::uint8_t> coarseTissue, tissueOfBrick, mixedTissues;
 
         template <class F>
         void visit(F&& f) {
@@ -100,40 +98,6 @@ class FieldFile {
         return {std::as_bytes(std::span(field.brickIndex)), std::as_bytes(std::span(field.coarse)),
                 std::as_bytes(std::span(s.coarseTissue)),   std::as_bytes(std::span(s.tissueOfBrick)),
                 std::as_bytes(std::span(s.mixedTissues)),   std::as_bytes(std::span(field.values))};
-    }
-
-    static void packTissues(const FieldStorage& field, Sections& s) {
-        s.coarseTissue.assign(field.coarse.size(), static_cast<std::uint8_t>(cases::Tissue::none));
-        for (std::size_t i = 0; i < field.coarse.size(); ++i) {
-            const std::uint8_t* nodes = field.tissues->of(i);
-            const bool mixed = field.tissues->isMixed(i);
-            if (field.coarse[i] < 0.0f) s.coarseTissue[i] = nodes[kCentreNode];
-            if (field.brickIndex[i] < 0) continue;
-            s.tissueOfBrick.push_back(mixed ? kMixedTissues : *nodes);
-            if (mixed) s.mixedTissues.insert(s.mixedTissues.end(), nodes, nodes + kBrickValues);
-        }
-    }
-
-    /// After bricksAreSound().
-    static bool unpackTissues(Sections& s, const TissueSet& known) {
-        if (!known.hasAll(s.mixedTissues)) return false;
-        auto tissues = std::make_shared<BrickTissues>(s.coarseTissue.size());
-        std::size_t mixed = 0;
-        for (std::size_t i = 0; i < s.coarseTissue.size(); ++i) {
-            tissues->setUniform(i, s.coarseTissue[i]);
-            if (s.field.brickIndex[i] < 0) continue;
-            const std::uint8_t tissue = s.tissueOfBrick[static_cast<std::size_t>(s.field.brickIndex[i])];
-            if (tissue != kMixedTissues) {
-                if (!known.has(tissue)) return false;
-                tissues->setUniform(i, tissue);
-            } else {
-                if ((mixed + 1) * kBrickValues > s.mixedTissues.size()) return false;
-                tissues->addMixed(i, &s.mixedTissues[mixed++ * kBrickValues]);
-            }
-            if (s.field.coarse[i] < 0.0f && tissues->of(i)[kCentreNode] != s.coarseTissue[i]) return false;
-        }
-        s.field.tissues = std::move(tissues);
-        return mixed * kBrickValues == s.mixedTissues.size();
     }
 
     /// The empty grid of the asked field with room for what the header tells; only after the file's length agrees.
@@ -283,7 +247,7 @@ std::uint64_t cacheKey(const cases::Case& toothCase, const FieldSettings& settin
 std::vector<std::byte> encodeField(const DistanceField& field, std::uint64_t key) {
     // A field is most of a tooth's memory: not copied, and the bytes in one piece from the start.
     FieldFile::Sections sections;
-    FieldFile::packTissues(field.storage(), sections);
+    static_cast<StoredTissues&>(sections) = StoredTissues::of(field.storage());
     Header header = FieldFile::headerOf(field.storage());
     header.key = key;
     header.mixedBricks = sections.mixedTissues.size() / kBrickValues;
@@ -328,7 +292,7 @@ std::optional<DistanceField> readFieldFile(const fs::path& path, std::uint64_t k
     const FieldStorage& field = sections.field;
     const bool believed = whole && hasher.value() == header.payloadHash &&
                           FieldFile::bricksAreSound(sections, empty, tissues) && FieldFile::valuesAreSound(field) &&
-                          FieldFile::unpackTissues(sections, tissues) && FieldFile::isOf(tree, field, empty);
+                          sections.putInto(sections.field, tissues) && FieldFile::isOf(tree, field, empty);
     if (!believed) return std::nullopt;
     return DistanceField(std::move(sections.field));
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/model/field/packet_distance.h"
 
+#include <algorithm>
+
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/simd.h"
 
@@ -59,7 +61,13 @@ PacketDistance::PacketDistance(const geometry::TriangleTree& tree)
     });
 }
 
-std::uint32_t PacketDistance::distances(const Vec3* points, int count, std::uint32_t seed, float* out) const {
+float distanceTo(const geometry::TriangleTree& tree, std::uint32_t triangle, const Vec3& p) {
+    const geometry::NearestPoint n = tree.nearestOn(triangle, p);
+    return static_cast<float>(tree.side(p, n) * n.distanceMm);
+}
+
+std::uint32_t PacketDistance::distances(const Vec3* points, int count, std::uint32_t seed, float* out,
+                                        std::uint32_t* triangles) const {
     core::Box box;
     for (int i = 0; i < count; ++i)
         box.extend(points[i]);
@@ -73,10 +81,9 @@ std::uint32_t PacketDistance::distances(const Vec3* points, int count, std::uint
     }
     std::uint32_t nearest[kPacket];
     kernel_(tree_.nodes().data(), flat_.data(), packet, seed, nearest);
-    for (int i = 0; i < count; ++i) {
-        const geometry::NearestPoint n = tree_.nearestOn(nearest[i], points[i]);
-        out[i] = static_cast<float>(tree_.side(points[i], n) * n.distanceMm);
-    }
+    for (int i = 0; i < count; ++i)
+        out[i] = distanceTo(tree_, nearest[i], points[i]);
+    if (triangles != nullptr) std::copy_n(nearest, count, triangles);
     return nearest[0];
 }
 

@@ -12,6 +12,9 @@
 
 namespace handpiece::field {
 
+/// The signed distance [mm] of `p` to one triangle of a tree, with which distances() ends each search.
+[[nodiscard]] float distanceTo(const geometry::TriangleTree& tree, std::uint32_t triangle, const core::Vec3& p);
+
 /// Made once a surface; const, any thread. `tree` must outlive it.
 class PacketDistance {
   public:
@@ -19,7 +22,9 @@ class PacketDistance {
 
     /// Signed distances [mm], exact on triangles no farther than the nearest by more than float rounding, of `count`
     /// (1 .. kPacket) points; the search starts from `seed`, any triangle. Returns a triangle to start the next from.
-    std::uint32_t distances(const core::Vec3* points, int count, std::uint32_t seed, float* out) const;
+    /// `triangles`, where wanted: the one that each distance is of.
+    std::uint32_t distances(const core::Vec3* points, int count, std::uint32_t seed, float* out,
+                            std::uint32_t* triangles = nullptr) const;
 
   private:
     const geometry::TriangleTree& tree_;

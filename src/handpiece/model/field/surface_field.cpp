@@ -25,14 +25,11 @@ struct LocalNode {
 /// Fills the nodes of all stored bricks. Nodes on the faces between bricks belong to one of them; the others copy.
 class NodeFiller {
   public:
-    NodeFiller(FieldBuilder& builder, const geometry::TriangleTree& tree,
-               const std::vector<std::uint32_t>& centreTriangle)
-        : builder_(builder), centreTriangle_(centreTriangle), distance_(tree) {}
+    explicit NodeFiller(FieldBuilder& builder) : builder_(builder) {}
 
-    /// Computes the nodes that brick `stored` owns.
-    void compute(std::size_t stored) {
+    /// Computes the nodes that brick `stored` owns, beginning at `seed`; `nearest`, where wanted, gets their triangles.
+    void compute(std::size_t stored, const PacketDistance& distance, std::uint32_t seed, std::uint32_t* nearest) {
         const std::array<std::int32_t, 3> brick = builder_.brickAt(builder_.storedBricks()[stored]);
-        std::uint32_t seed = centreTriangle_[builder_.storedBricks()[stored]];
         float* values = builder_.values(stored);
         forEachTile([&](const LocalNode& low, const LocalNode& high) {
             LocalNode nodes[kPacket];
@@ -41,8 +38,24 @@ class NodeFiller {
                 for (std::int8_t y = low.y; y < high.y; ++y)
                     for (std::int8_t x = low.x; x < high.x; ++x)
                         if (ownerOffset(brick, {x, y, z}) == 0) nodes[count++] = {x, y, z};
-            if (count > 0) seed = computePacket(brick, nodes, count, seed, values);
+            if (count > 0) seed = computePacket(brick, nodes, count, distance, seed, values, nearest);
         });
+    }
+
+    /// The same where the triangles are known. False where they are not those of these nodes.
+    [[nodiscard]] bool compute(std::size_t stored, const geometry::TriangleTree& tree, const std::uint32_t* nearest) {
+        const std::array<std::int32_t, 3> brick = builder_.brickAt(builder_.storedBricks()[stored]);
+        float* values = builder_.values(stored);
+        for (std::int8_t z = 0; z < kBrickNodes; ++z)
+            for (std::int8_t y = 0; y < kBrickNodes; ++y)
+                for (std::int8_t x = 0; x < kBrickNodes; ++x) {
+                    const LocalNode node{x, y, z};
+                    const std::uint32_t triangle = nearest[node.index()];
+                    const bool isOwn = ownerOffset(brick, node) == 0;
+                    if (isOwn ? triangle >= tree.triangles().size() : triangle != geometry::kNoTriangle) return false;
+                    if (isOwn) values[node.index()] = distanceTo(tree, triangle, placeOf(brick, node));
+                }
+        return true;
     }
 
     /// Copies the nodes that other bricks own; all of them must have been computed.
@@ -120,23 +133,29 @@ class NodeFiller {
         return 0;
     }
 
+    [[nodiscard]] Vec3 placeOf(const std::array<std::int32_t, 3>& brick, const LocalNode& node) const {
+        return builder_.nodeMm(kBrickCells * std::int64_t{brick[0]} + node.x,
+                               kBrickCells * std::int64_t{brick[1]} + node.y,
+                               kBrickCells * std::int64_t{brick[2]} + node.z);
+    }
+
     std::uint32_t computePacket(const std::array<std::int32_t, 3>& brick, const LocalNode* nodes, int count,
-                                std::uint32_t seed, float* values) {
+                                const PacketDistance& search, std::uint32_t seed, float* values,
+                                std::uint32_t* nearest) {
         Vec3 point[kPacket];
         float distance[kPacket];
+        std::uint32_t triangle[kPacket];
         for (int i = 0; i < count; ++i)
-            point[i] = builder_.nodeMm(kBrickCells * std::int64_t{brick[0]} + nodes[i].x,
-                                       kBrickCells * std::int64_t{brick[1]} + nodes[i].y,
-                                       kBrickCells * std::int64_t{brick[2]} + nodes[i].z);
-        const std::uint32_t next = distance_.distances(point, count, seed, distance);
+            point[i] = placeOf(brick, nodes[i]);
+        const std::uint32_t next = search.distances(point, count, seed, distance, triangle);
         for (int i = 0; i < count; ++i)
             values[nodes[i].index()] = distance[i];
+        for (int i = 0; nearest != nullptr && i < count; ++i)
+            nearest[nodes[i].index()] = triangle[i];
         return next;
     }
 
     FieldBuilder& builder_;
-    const std::vector<std::uint32_t>& centreTriangle_;
-    PacketDistance distance_;
 };
 
 /// A hollow or inside-out tooth shows in its volume, a torn one in extra area. Less area is what a grid makes of sharp
@@ -161,7 +180,7 @@ void requireLikeness(const DistanceField& field, const geometry::TriangleMesh& m
 
 DistanceField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, const geometry::TriangleTree& tree,
                                         std::span<const PartSurface> parts, const FieldSettings& settings,
-                                        const core::Progress& progress) {
+                                        const core::Progress& progress, std::vector<std::uint32_t>* nearest) {
     FieldBuilder builder = around(tree.bounds(), settings);
     core::report(progress, 0.0);
     // Row by row, each search starting from the last one's triangle: rows, not pieces of work, so that ties fall alike.
@@ -186,12 +205,15 @@ DistanceField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, cons
             if (builder.coarse(i) < 0.0f) builder.setCoarseTissue(i, tissues.at(builder.centreMm(i)));
     });
 
-    NodeFiller filler(builder, tree, centreTriangle);
+    NodeFiller filler(builder);
+    const PacketDistance distance(tree);
     const std::size_t count = builder.storedBricks().size();
+    if (nearest != nullptr) nearest->assign(count * kBrickValues, geometry::kNoTriangle);
     std::atomic<std::size_t> done{0};
     core::parallelFor(count, 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            filler.compute(i);
+            filler.compute(i, distance, centreTriangle[builder.storedBricks()[i]],
+                           nearest != nullptr ? &(*nearest)[i * kBrickValues] : nullptr);
             const auto [bx, by, bz] = builder.brickAt(builder.storedBricks()[i]);
             const std::int64_t x0 = kBrickCells * std::int64_t{bx}, y0 = kBrickCells * std::int64_t{by},
                                z0 = kBrickCells * std::int64_t{bz};
@@ -208,6 +230,29 @@ DistanceField FieldBuilder::fromSurface(const geometry::TriangleMesh& mesh, cons
     requireLikeness(field, mesh);
     core::report(progress, 1.0);
     return field;
+}
+
+std::optional<FieldStorage> FieldBuilder::fromNearest(const geometry::TriangleTree& tree, const FieldSettings& settings,
+                                                      std::vector<float> coarse,
+                                                      std::span<const std::uint32_t> nearest) {
+    FieldBuilder builder = around(tree.bounds(), settings);
+    if (coarse.size() != builder.denseBricks()) return std::nullopt;
+    builder.classify([&](std::size_t dense) { return static_cast<double>(coarse[dense]); });
+    builder.store();
+    const std::size_t count = builder.storedBricks().size();
+    if (nearest.size() != count * kBrickValues) return std::nullopt;
+    NodeFiller filler(builder);
+    std::atomic<bool> fits{true};
+    core::parallelFor(count, 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            if (!filler.compute(i, tree, &nearest[i * kBrickValues])) fits = false;
+    });
+    if (!fits) return std::nullopt;
+    core::parallelFor(count, 64, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i)
+            filler.copy(i);
+    });
+    return std::move(builder.field_);
 }
 
 }  // namespace handpiece::field

@@ -7,6 +7,7 @@
 
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/base/prepared/packed_bytes.h"
 
 namespace handpiece::field {
 namespace fs = std::filesystem;
@@ -161,23 +162,21 @@ std::vector<std::byte> encodeTissues(const TissueMap& map, std::uint64_t key) {
     return data;
 }
 
-std::optional<TissueMap> readTissueFile(const fs::path& path, const DistanceField& grid, std::uint64_t key,
-                                        const TissueSet& tissues) {
-    const core::FileStream file = core::openOwnFile(path);
-    Header header;
-    if (!file || std::fread(&header, sizeof header, 1, file.get()) != 1) return std::nullopt;
+namespace {
+
+bool isWanted(const Header& header, const DistanceField& grid, std::uint64_t key, std::uint64_t bytes) {
     if (std::memcmp(header.magic, kMagic, sizeof kMagic) != 0 || header.version != kVersion ||
         header.byteOrder != kByteOrder || header.key != key || header.headerHash != headerHashOf(header))
-        return std::nullopt;
+        return false;
     const std::size_t dense = grid.storage().coarse.size();
-    if (header.bricks != dense || header.mixedBricks > dense || header.layers > 255 * header.mixedBricks ||
-        core::sizeOf(file) != sizeof header + header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) +
-                                  header.layers * (1 + kBrickValues))
-        return std::nullopt;
-    std::vector<std::byte> payload(core::sizeOf(file) - sizeof header);
-    if (std::fread(payload.data(), 1, payload.size(), file.get()) != payload.size() ||
-        hashOf(payload) != header.payloadHash)
-        return std::nullopt;
+    return header.bricks == dense && header.mixedBricks <= dense && header.layers <= 255 * header.mixedBricks &&
+           bytes == sizeof header + header.bricks + header.mixedBricks * (4 + 2 + kBrickValues) +
+                        header.layers * (1 + kBrickValues);
+}
+
+std::optional<TissueMap> mapFrom(const Header& header, std::span<const std::byte> payload, const DistanceField& grid,
+                                 const TissueSet& tissues) {
+    if (hashOf(payload) != header.payloadHash) return std::nullopt;
     TissueStorage::Sections sections(header);
     std::size_t at = 0;
     sections.visit([&](std::span<std::byte> section) {
@@ -185,6 +184,54 @@ std::optional<TissueMap> readTissueFile(const fs::path& path, const DistanceFiel
         at += section.size();
     });
     return TissueStorage::mapOf(std::move(sections), grid, tissues);
+}
+
+/// Distances of layers change little from node to node: the differences pack better. They stand last.
+template <class F>
+void overDistances(std::span<std::byte> file, std::uint64_t layers, F&& f) {
+    const std::span<std::byte> values = file.last(static_cast<std::size_t>(layers) * kBrickValues);
+    f(reinterpret_cast<std::uint8_t*>(values.data()), values.size());
+}
+
+constexpr std::uint64_t kMostBytes = 1ull << 30;
+
+}  // namespace
+
+std::optional<TissueMap> readTissueFile(const fs::path& path, const DistanceField& grid, std::uint64_t key,
+                                        const TissueSet& tissues) {
+    const core::FileStream file = core::openOwnFile(path);
+    Header header;
+    if (!file || std::fread(&header, sizeof header, 1, file.get()) != 1 ||
+        !isWanted(header, grid, key, core::sizeOf(file)))
+        return std::nullopt;
+    std::vector<std::byte> payload(core::sizeOf(file) - sizeof header);
+    if (std::fread(payload.data(), 1, payload.size(), file.get()) != payload.size()) return std::nullopt;
+    return mapFrom(header, payload, grid, tissues);
+}
+
+std::vector<std::byte> packTissues(const TissueMap& map, std::uint64_t key) {
+    std::vector<std::byte> file = encodeTissues(map, key);
+    overDistances(file, TissueStorage::headerOf(map).layers, [](std::uint8_t* values, std::size_t count) {
+        for (std::size_t i = count; i-- > 1;)
+            values[i] = static_cast<std::uint8_t>(values[i] - values[i - 1]);
+    });
+    std::vector<std::byte> packed;
+    prepared::pack(file, packed);
+    return packed;
+}
+
+std::optional<TissueMap> unpackTissues(std::span<const std::byte> packed, const DistanceField& grid, std::uint64_t key,
+                                       const TissueSet& tissues) {
+    std::optional<std::vector<std::byte>> file = prepared::unpack(packed, kMostBytes);
+    Header header;
+    if (!file || !packed.empty() || file->size() < sizeof header) return std::nullopt;
+    std::memcpy(&header, file->data(), sizeof header);
+    if (!isWanted(header, grid, key, file->size())) return std::nullopt;
+    overDistances(*file, header.layers, [](std::uint8_t* values, std::size_t count) {
+        for (std::size_t i = 1; i < count; ++i)
+            values[i] = static_cast<std::uint8_t>(values[i] + values[i - 1]);
+    });
+    return mapFrom(header, std::span(*file).subspan(sizeof header), grid, tissues);
 }
 
 }  // namespace handpiece::field

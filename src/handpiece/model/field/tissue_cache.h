@@ -25,4 +25,9 @@ namespace handpiece::field {
 [[nodiscard]] std::optional<TissueMap> readTissueFile(const std::filesystem::path& path, const DistanceField& grid,
                                                       std::uint64_t key, const TissueSet& tissues);
 
+/// The same, packed for what is prepared, and back.
+[[nodiscard]] std::vector<std::byte> packTissues(const TissueMap& map, std::uint64_t key);
+[[nodiscard]] std::optional<TissueMap> unpackTissues(std::span<const std::byte> packed, const DistanceField& grid,
+                                                     std::uint64_t key, const TissueSet& tissues);
+
 }  // namespace handpiece::field

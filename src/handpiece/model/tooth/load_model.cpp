@@ -1,12 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <optional>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/model/field/field_builder.h"
 #include "handpiece/model/field/field_cache.h"
+#include "handpiece/model/field/packed_field.h"
 #include "handpiece/model/field/tissue_cache.h"
+#include "handpiece/model/tooth/kept_model.h"
 #include "handpiece/model/tooth/tooth_model.h"
 
 namespace handpiece::tooth {
@@ -14,6 +20,8 @@ namespace {
 
 using geometry::TriangleMesh;
 using geometry::TriangleTree;
+
+constexpr const char *kField = ".packed-field", *kTissues = ".packed-tissues";
 
 /// The surface that is felt: the case's outer one, or that of its only part.
 const TriangleMesh& outerOf(const cases::Case& toothCase) {
@@ -37,6 +45,14 @@ class Loader {
         if (!settings.useCache) return;
         key_ = field::cacheKey(toothCase, settings.field);
         places_ = field::cachePlaces(toothCase, settings.cacheFolder, key_);
+        preparedName_ = fmt::format("{:016x}", key_);
+    }
+
+    [[nodiscard]] bool isKept() const {
+        std::error_code error;
+        return std::any_of(places_.begin(), places_.end(),
+                           [&](const std::filesystem::path& place) { return std::filesystem::exists(place, error); }) ||
+               (!preparedName_.empty() && prepared::isKnown(preparedName_ + kField));
     }
 
     field::DistanceField field(const core::Progress& progress) {
@@ -47,6 +63,10 @@ class Loader {
                 fromCache_ = true;
                 return std::move(*found);
             }
+        if (auto found = preparedField()) {
+            fromCache_ = true;
+            return std::move(*found);
+        }
         cases::requireSolid(outer_, case_.source.empty() ? case_.name : case_.source.string());
         if (case_.parts.size() > 1)
             for (const cases::Part& part : case_.parts)
@@ -54,8 +74,11 @@ class Loader {
         core::report(progress, 0.1);
         if (!tree_) tree_.emplace(outer_);
         buildParts(core::part(progress, 0.1, 0.2));
-        field::DistanceField made =
-            field::FieldBuilder::fromSurface(outer_, *tree_, parts_, settings_.field, core::part(progress, 0.2, 1.0));
+        const bool isCollecting = prepared::isCollecting() && !preparedName_.empty();
+        std::vector<std::uint32_t> nearest;
+        field::DistanceField made = field::FieldBuilder::fromSurface(
+            outer_, *tree_, parts_, settings_.field, core::part(progress, 0.2, 1.0), isCollecting ? &nearest : nullptr);
+        if (isCollecting) prepared::keep(preparedName_ + kField, field::packField(made, nearest, key_));
         if (!places_.empty()) (void)field::writeFieldFile(places_, field::encodeField(made, key_));
         return made;
     }
@@ -71,8 +94,15 @@ class Loader {
             place.replace_extension(".tissues");
             if (auto found = field::readTissueFile(place, grid, key, field::TissueSet(case_))) return std::move(*found);
         }
+        if (const auto packed = preparedFile(kTissues)) {
+            if (auto found = field::unpackTissues(*packed, grid, key, field::TissueSet(case_)))
+                return std::move(*found);
+            prepared::refuse(preparedName_ + kTissues);
+        }
         if (parts_.empty()) buildParts(core::part(progress, 0.0, 0.1));
         field::TissueMap made = field::TissueMap::fromParts(grid, parts_, core::part(progress, 0.1, 0.9));
+        if (prepared::isCollecting() && !preparedName_.empty())
+            prepared::keep(preparedName_ + kTissues, field::packTissues(made, key));
         if (!places.empty()) (void)field::writeFieldFile(places, field::encodeTissues(made, key));
         return made;
     }
@@ -84,6 +114,18 @@ class Loader {
     }
 
   private:
+    [[nodiscard]] std::optional<std::vector<std::byte>> preparedFile(const char* kind) const {
+        return preparedName_.empty() ? std::nullopt : prepared::read(preparedName_ + kind);
+    }
+    /// Of those that came with the program. What it was made of had passed requireSolid().
+    std::optional<field::DistanceField> preparedField() {
+        const auto packed = preparedFile(kField);
+        if (!packed) return std::nullopt;
+        if (!tree_) tree_.emplace(outer_);
+        auto found = field::unpackField(*packed, key_, *tree_, settings_.field, field::TissueSet(case_));
+        if (!found) prepared::refuse(preparedName_ + kField);
+        return found;
+    }
     void buildParts(const core::Progress& progress) {
         for (const cases::Part& part : case_.parts) {
             const TriangleTree* tree = nullptr;
@@ -101,6 +143,7 @@ class Loader {
     const LoadSettings& settings_;
     const TriangleMesh& outer_;
     std::uint64_t key_ = 0;
+    std::string preparedName_;  ///< empty where no cache is wanted
     std::vector<std::filesystem::path> places_;
     std::optional<TriangleTree> tree_;
     std::deque<TriangleTree> trees_;
@@ -109,6 +152,10 @@ class Loader {
 };
 
 }  // namespace
+
+bool isKept(const cases::Case& toothCase, const LoadSettings& settings) {
+    return Loader(toothCase, settings).isKept();
+}
 
 std::shared_ptr<const ToothModel> loadModel(const cases::Case& toothCase, const LoadSettings& settings,
                                             const core::Progress& progress) {

@@ -111,16 +111,34 @@ MeasureFeature::MeasureFeature(const FeatureContext& context)
 }
 
 void MeasureFeature::connectTools() {
+    // As they were in the hand last: after a restart, after a crash, in a window of another language.
+    box_->setLoad(
+        settings_.number(QStringLiteral("work/loadN"), box_->loadN(), MeasureBox::kMinLoadN, MeasureBox::kMaxLoadN));
+    if (settings_.value(QStringLiteral("work/depthStopOn")).isValid())
+        box_->keepDepthStop(settings_.value(QStringLiteral("work/depthStopOn")).toBool(),
+                            settings_.number(QStringLiteral("work/depthStopMm"), MeasureBox::kFirstStopMm,
+                                             MeasureBox::kLeastStopMm, MeasureBox::kMaxStopMm));
+    const auto keepStop = [this](double stopMm) {
+        // What an exercise withholds is off there, and as it was afterwards.
+        if (!simulator_.permissions().allows(Operation::depthStop)) return;
+        settings_.set(QStringLiteral("work/depthStopOn"), stopMm > 0.0);
+        if (stopMm > 0.0) settings_.set(QStringLiteral("work/depthStopMm"), stopMm);
+    };
+    const auto keepLoad = [this](double loadN) { settings_.set(QStringLiteral("work/loadN"), loadN); };
+    connect(&view_, &ViewWidget::loadChanged, this, keepLoad);
+    connect(box_, &MeasureBox::loadChanged, this, keepLoad);
+    connect(box_, &MeasureBox::depthStopChanged, this, keepStop);
     // The load and the depth stop: wheel in the picture, sliders in the box.
     connect(&view_, &ViewWidget::loadChanged, box_, &MeasureBox::setLoad);
     connect(box_, &MeasureBox::loadChanged, &view_, &ViewWidget::setLoad);
-    connect(&view_, &ViewWidget::stopChanged, this, [this](std::optional<double> depthMm) {
+    connect(&view_, &ViewWidget::stopChanged, this, [this, keepStop](std::optional<double> depthMm) {
         box_->setDepthStop(depthMm.value_or(0.0));
-        simulator_.noteDepthStop(depthMm.has_value());
+        keepStop(depthMm.value_or(0.0));
+        noteStop();
     });
     connect(box_, &MeasureBox::depthStopChanged, this, [this](double stopMm) {
         view_.setStop(stopMm > 0.0 ? std::optional<double>(stopMm) : std::nullopt);
-        simulator_.noteDepthStop(stopMm > 0.0);
+        noteStop();
     });
     // The picture decides; the actions follow.
     for (const auto& [command, tool] : kTools)
@@ -140,6 +158,11 @@ void MeasureFeature::connectTools() {
         if (m.kind == Measurement::Kind::distance) box_->setCalliper(m.valueMm);
         window_.statusBar()->showMessage(m.text(), 8000);
     });
+}
+
+/// The pointer's hand has one; an arm has none, whatever the panel says.
+void MeasureFeature::noteStop() {
+    simulator_.noteDepthStop(view_.hand() != nullptr && view_.hand()->stopMm().has_value());
 }
 
 void MeasureFeature::connectSection() {
@@ -191,7 +214,7 @@ void MeasureFeature::showDocument() {
         // The hand that holds this tooth's bur presses and stops as the panel says.
         view_.setLoad(box_->loadN());
         view_.setStop(box_->depthStopMm());
-        simulator_.noteDepthStop(box_->depthStopMm().has_value());
+        noteStop();
         readouts_.start();
     }
 }

@@ -24,6 +24,7 @@ class MeasureFeature : public Feature {
 
   private:
     void connectTools();
+    void noteStop();
     void connectSection();
     void connectPlots();
     void showLegend();

@@ -18,6 +18,7 @@ class ViewFeature : public Feature {
     enum class Command { occlusal, buccal, lingual, mesial, distal, oblique, fit, goToBur, mirror, compare, help };
     explicit ViewFeature(const FeatureContext& context);
     void showDocument() override;
+    void showTick() override;
 
   private:
     void addViewsButton();
@@ -26,10 +27,12 @@ class ViewFeature : public Feature {
     void keepLook(const view::Look& look);
     void rememberEye();
     void recallEye();
+    [[nodiscard]] core::Pose heldPose() const;
 
     CommandSet<Command> commands_;
     ViewBar* bar_;
-    QTimer eyeTimer_;
+    QTimer eyeTimer_, turnTimer_;
+    core::Quat keptTurn_ = core::Quat::Identity();
     bool hasPicture_ = false;
 };
 

@@ -38,8 +38,9 @@ class WindowHabits : public PracticeTest {
             const QString plain = withoutMnemonic(action->text());
             const bool isLatin =
                 std::all_of(plain.begin(), plain.end(), [](QChar one) { return one.unicode() < 0x3000; });
-            if (isJapanese && !isLatin)
+            if (isJapanese && !isLatin) {
                 EXPECT_TRUE(action->text().contains(QStringLiteral("(&%1)").arg(c))) << qPrintable(action->text());
+            }
         }
     }
     void chooseLanguage(const char* code) {
@@ -75,8 +76,10 @@ TEST_F(WindowHabits, EveryMenuGivesEachEntryALetterOfItsOwn) {
                   isJapanese ? QStringLiteral("ファイル(&F)") : QStringLiteral("&File"));
         int menus = 0;
         for (QMenu* menu : window().findChildren<QMenu*>()) {
-            if (menu->actions().isEmpty()) continue;
+            if (menu->actions().isEmpty() || menu->objectName().startsWith(QLatin1String("qt_"))) continue;
+            if (menu->objectName().isEmpty()) continue;  // Qt's own, of what has no room in a bar
             menu->popup(window().mapToGlobal(QPoint(10, 10)));
+            QTest::qWait(10);  // what is listed only now has its letters a moment later
             expectLetters(menu->actions(), menu->objectName(), isJapanese);
             menu->close();
             for (const QAction* action : menu->actions())

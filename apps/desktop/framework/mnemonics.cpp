@@ -94,6 +94,13 @@ void giveMnemonics(const QList<QAction*>& entries) {
 
 QMenu* withMnemonics(QMenu* menu) {
     QObject::connect(menu, &QMenu::aboutToShow, menu, [menu] { giveMnemonics(menu->actions()); });
+    // And those that others list only now.
+    QObject::connect(
+        menu, &QMenu::aboutToShow, menu,
+        [menu] {
+            if (menu->isVisible()) giveMnemonics(menu->actions());
+        },
+        Qt::QueuedConnection);
     QObject::connect(menu, &QMenu::aboutToHide, menu, [menu] {
         for (QAction* action : menu->actions())
             if (!action->isSeparator()) action->setText(menuText(withoutMnemonic(action->text())));

@@ -162,7 +162,10 @@ void ViewFeature::showDocument() {
     }
     const cases::Case& toothCase = *simulator_.toothCase();
     view_.setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
-    view_.setPointer(simulator_.mailbox(), heldPose());
+    const core::Pose held = heldPose();
+    view_.setPointer(simulator_.mailbox(), held);
+    // As it begins it is not noted: over what a crash has left to be brought back.
+    keptTurn_ = held.orientation;
     if (simulator_.bur()) view_.setBur(simulator_.bur());
     view_.setPermissions(simulator_.permissions());
     bar_->setPermissions(simulator_.permissions());

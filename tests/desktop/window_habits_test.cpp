@@ -77,6 +77,9 @@ TEST_F(WindowHabits, EveryMenuGivesEachEntryALetterOfItsOwn) {
         int menus = 0;
         for (QMenu* menu : window().findChildren<QMenu*>()) {
             if (menu->actions().isEmpty() || menu->objectName().startsWith(QLatin1String("qt_"))) continue;
+            // Made anew while they are open, as devices are found.
+            if (menu->objectName() == QLatin1String("menuDevice") || menu->objectName() == QLatin1String("menuPedal"))
+                continue;
             if (menu->objectName().isEmpty()) continue;  // Qt's own, of what has no room in a bar
             menu->popup(window().mapToGlobal(QPoint(10, 10)));
             QTest::qWait(10);  // what is listed only now has its letters a moment later

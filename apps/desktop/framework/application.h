@@ -13,7 +13,7 @@ namespace handpiece::desktop {
 /// What a slot throws would end the program, and with it the student's work: here it is told, and the work goes on.
 class Application : public QApplication {
   public:
-    using QApplication::QApplication;
+    Application(int& argc, char** argv);
     /// Set it once there is a window to tell in; until then exceptions pass.
     std::function<void(const core::Error&)> whenThrown;
 

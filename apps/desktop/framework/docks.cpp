@@ -3,10 +3,16 @@
 
 #include <QAction>
 #include <QDockWidget>
+#include <QScreen>
 #include <QScrollArea>
 #include <algorithm>
 
 namespace handpiece::desktop {
+namespace {
+
+constexpr int kMostOfWidth = 36, kLowScreen = 600, kLeastHeight = 24;
+
+}  // namespace
 
 QDockWidget* Docks::addWidget(DockRow row, QWidget* panel) {
     auto* scroll = new QScrollArea;
@@ -14,7 +20,12 @@ QDockWidget* Docks::addWidget(DockRow row, QWidget* panel) {
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
     scroll->setWidget(panel);
-    scroll->setMinimumWidth(panel->minimumSizeHint().width() + 4);
+    // On a small screen the picture keeps its share, and what a panel has no room for scrolls.
+    const QSize room = window_->screen()->availableSize();
+    const int wanted = panel->minimumSizeHint().width() + 4, most = room.width() * kMostOfWidth / 100;
+    scroll->setMinimumWidth(std::min(wanted, most));
+    if (wanted > most) scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+    if (room.height() < kLowScreen) scroll->setMinimumHeight(kLeastHeight);
     auto* dock = new QDockWidget(row.title, window_);
     dock->setObjectName(QLatin1String(row.name));
     dock->setAccessibleName(row.title);

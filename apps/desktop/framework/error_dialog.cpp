@@ -8,6 +8,9 @@
 #include <QLabel>
 #include <QPushButton>
 #include <QStyle>
+#include <QVBoxLayout>
+
+#include "desktop/widgets/scrolled.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -26,8 +29,9 @@ ErrorDialog::ErrorDialog(const Problem& problem, QWidget* parent) : QDialog(pare
     setObjectName(QStringLiteral("errorDialog"));
     setWindowTitle(tr("That did not work"));
     setAttribute(Qt::WA_DeleteOnClose);
-    auto* grid = new QGridLayout(this);
-    grid->setContentsMargins(20, 18, 20, 14);
+    auto* column = new QVBoxLayout(this);
+    column->setContentsMargins(20, 18, 20, 14);
+    auto* grid = new QGridLayout;
     grid->setHorizontalSpacing(16);
     grid->setVerticalSpacing(10);
     auto* symbol = new QLabel;
@@ -57,8 +61,10 @@ ErrorDialog::ErrorDialog(const Problem& problem, QWidget* parent) : QDialog(pare
     auto* copy = buttons_->addButton(tr("Copy text"), QDialogButtonBox::ActionRole);
     copy->setObjectName(QStringLiteral("errorCopy"));
     copy->setToolTip(tr("Copy this message, to send it to somebody"));
-    grid->addWidget(buttons_, row, 0, 1, 2);
     grid->setColumnStretch(1, 1);
+    grid->setRowStretch(row, 1);
+    column->addWidget(new Scrolled(grid, this), 1);
+    column->addWidget(buttons_);
     connect(copy, &QPushButton::clicked, this, [this] { QGuiApplication::clipboard()->setText(text()); });
     connect(buttons_, &QDialogButtonBox::rejected, this, &QDialog::reject);
 }

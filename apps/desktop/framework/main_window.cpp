@@ -12,6 +12,8 @@
 
 #include "desktop/framework/feature.h"
 #include "desktop/framework/job_strip.h"
+#include "desktop/framework/roomy_layout.h"
+#include "desktop/framework/screen_fit.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/notice_bar.h"
 #include "desktop/widgets/status_line.h"
@@ -20,6 +22,10 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr int kStateVersion = 1;
+RoomyLayout& roomyLayoutOf(const MainWindow& window) {
+    return *window.findChild<RoomyLayout*>(QString(), Qt::FindDirectChildrenOnly);
+}
+
 constexpr const char* kLayouts[] = {"practice", "laboratory", "paper"};  // in the order of Detail
 
 }  // namespace
@@ -31,6 +37,7 @@ MainWindow::MainWindow(Settings& settings, QWidget* parent)
       commands_(new Commands(this)),
       shelves_(new Shelves(this, *commands_)),
       docks_(new Docks(this)) {
+    new RoomyLayout(this, kStateVersion);
     setObjectName(QStringLiteral("mainWindow"));
     setWindowIcon(applicationIcon());
     setAcceptDrops(true);
@@ -44,8 +51,7 @@ MainWindow::~MainWindow() {
 
 QSize MainWindow::firstSize(const QSize& room) {
     // The frame's title is outside of what resize() counts.
-    constexpr int kTitle = 38;
-    return QSize(1440, 900).boundedTo(room - QSize(0, kTitle));
+    return QSize(1440, 900).boundedTo(room - QSize(0, kTitlePixels));
 }
 
 void MainWindow::makeCentre() {
@@ -107,7 +113,7 @@ QString MainWindow::layoutKey() const {
 }
 
 void MainWindow::rememberLayout() {
-    if (arranged_) settings_.set(layoutKey(), saveState(kStateVersion));
+    if (arranged_) settings_.set(layoutKey(), roomyLayoutOf(*this).state());
 }
 
 void MainWindow::rememberAll() {
@@ -124,8 +130,7 @@ void MainWindow::setDetail(Detail detail) {
     detail_ = detail;
     arrange();
     arranged_ = true;
-    if (const QByteArray state = settings_.value(layoutKey()).toByteArray(); !state.isEmpty())
-        restoreState(state, kStateVersion);
+    roomyLayoutOf(*this).restore(settings_.value(layoutKey()).toByteArray());
     docks_->showWanted();
     emit detailChanged(detail);
 }
@@ -133,6 +138,7 @@ void MainWindow::setDetail(Detail detail) {
 void MainWindow::resetLayout() {
     settings_.remove(layoutKey());
     arrange();
+    roomyLayoutOf(*this).restore({});
 }
 
 void MainWindow::arrange() {

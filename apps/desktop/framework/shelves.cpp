@@ -8,12 +8,13 @@
 #include <QShortcut>
 #include <QToolBar>
 
+#include "desktop/framework/mnemonics.h"
+
 namespace handpiece::desktop {
 
 Shelves::Shelves(QMainWindow* window, Commands& commands) : QObject(window), window_(window), commands_(commands) {
     addBar(Shelf::fileBar, "fileBar", tr("File bar"));
     addBar(Shelf::toolBar, "toolBar", tr("Tool bar"));
-    // No mnemonics: Alt belongs to the window manager, F10 opens the first menu.
     QMenuBar* bar = window_->menuBar();
     addMenu(Shelf::file, "menuFile", bar->addMenu(tr("File")));
     addMenu(Shelf::edit, "menuEdit", bar->addMenu(tr("Edit")));
@@ -27,13 +28,15 @@ Shelves::Shelves(QMainWindow* window, Commands& commands) : QObject(window), win
     under(Shelf::panels, "menuPanels", tr("Panels"), 23);
     under(Shelf::theme, "menuTheme", tr("Colours of the window"), 30);
     under(Shelf::language, "menuLanguage", tr("Language"), 31);
+    giveMnemonics(bar->actions());
+    // Where the desktop keeps Alt for itself.
     auto* first = new QShortcut(Qt::Key_F10, window_);
     connect(first, &QShortcut::activated, bar, [bar] { bar->setActiveAction(bar->actions().front()); });
 }
 
 QMenu* Shelves::addMenu(Shelf shelf, const char* name, QMenu* menu) {
     menu->setObjectName(QLatin1String(name));
-    return menus_[shelf] = menu;
+    return menus_[shelf] = withMnemonics(menu);
 }
 
 QMenu* Shelves::under(Shelf shelf, const char* name, const QString& title, int at) {

@@ -2,7 +2,6 @@
 #include "desktop/picture/section_bar.h"
 
 #include <QButtonGroup>
-#include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QToolButton>
 
@@ -45,14 +44,13 @@ SectionBar::SectionBar(QWidget* parent) : QFrame(parent) {
         directions_->addButton(button, static_cast<int>(direction));
         row->addWidget(button);
     }
-    offset_ = new QDoubleSpinBox(this);
+    offset_ = new DecimalField(this);
     offset_->setObjectName("sectionBarOffset");
     offset_->setAccessibleName(tr("Place of the section"));
     offset_->setToolTip(tr("Where the section lies, from the middle of the tooth's frame"));
     offset_->setDecimals(1);
     offset_->setSingleStep(0.1);
     offset_->setSuffix(tr(" mm"));
-    offset_->setKeyboardTracking(false);
     row->addWidget(offset_);
     flip_ = new QToolButton(this);
     flip_->setObjectName("sectionFlip");
@@ -79,7 +77,7 @@ SectionBar::SectionBar(QWidget* parent) : QFrame(parent) {
         setPlace(place_, bounds_);
         emit placeChanged(place_);
     });
-    connect(offset_, &QDoubleSpinBox::valueChanged, this, [this](double value) {
+    connect(offset_, &DecimalField::valueChanged, this, [this](double value) {
         place_.offsetMm = value;
         emit placeChanged(place_);
     });

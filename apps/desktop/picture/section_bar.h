@@ -6,10 +6,10 @@
 #include <QFrame>
 
 #include "desktop/picture/measuring.h"
+#include "desktop/widgets/number_field.h"
 #include "handpiece/base/core/vec.h"
 
 class QButtonGroup;
-class QDoubleSpinBox;
 class QToolButton;
 
 namespace handpiece::desktop {
@@ -30,7 +30,7 @@ class SectionBar : public QFrame {
     SectionPlace place_;
     core::Box bounds_;
     QButtonGroup* directions_ = nullptr;
-    QDoubleSpinBox* offset_ = nullptr;
+    DecimalField* offset_ = nullptr;
     QToolButton* flip_ = nullptr;
 };
 

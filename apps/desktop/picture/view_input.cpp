@@ -341,6 +341,9 @@ void ViewWidget::enterEvent(QEnterEvent* event) {
 
 void ViewWidget::leaveEvent(QEvent*) {
     State& s = *state_;
+    // Over the panels nobody leads it: it is lifted, not left behind the tooth at whose edge the pointer went off.
+    if (s.hand && s.byMouse && s.drag == Drag::none && s.tool == Tool::drill && !s.hand->pedalLatched())
+        s.hand->escape();
     if (s.cross) return;
     s.pointer.reset();
     s.reading.reset();
@@ -591,8 +594,17 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
     return true;
 }
 
+/// With Alt it is a menu's letter, and with the Windows key the desktop's.
+static bool isOthers(const QKeyEvent& key) {
+    return key.key() != Qt::Key_Alt && (key.modifiers() & (Qt::AltModifier | Qt::MetaModifier)) != 0;
+}
+
 void ViewWidget::keyPressEvent(QKeyEvent* event) {
     State& s = *state_;
+    if (isOthers(*event)) {
+        QWidget::keyPressEvent(event);
+        return;
+    }
     const Binding binding = bindingOf(*event);
     const auto action = s.bindings.actionFor(binding);
     const bool slow = s.bindings.isSlow(event->modifiers());
@@ -619,7 +631,7 @@ bool ViewWidget::event(QEvent* event) {
     // Keys bound here are not a menu's while one works in the picture.
     if (event->type() == QEvent::ShortcutOverride) {
         const auto* key = static_cast<QKeyEvent*>(event);
-        if (state_->bindings.actionFor(bindingOf(*key))) {
+        if (!isOthers(*key) && state_->bindings.actionFor(bindingOf(*key))) {
             event->accept();
             return true;
         }

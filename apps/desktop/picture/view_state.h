@@ -54,6 +54,7 @@ struct ViewWidget::State {
     std::optional<SectionPlace> section;
     SectionPlace lastSection;
     bool sectionPlaced = false;
+    std::optional<view::Camera> beforeSection, facingSection;  // the eye, where it had to go round to see the section
     std::optional<core::Vec3> mirrorCentreMm, restMm;
     bool mirrorView = false;
     std::vector<ShownLandmark> landmarks;
@@ -111,7 +112,11 @@ struct ViewWidget::State {
             eyeMoved();
         }
     }
-    void turnHalf();    // the eye, for two pictures or for one again
+    void turnHalf();  // the eye, for two pictures or for one again
+    /// The section that is laid is seen: its other side is taken away, or the eye goes round to where it does not see
+    /// it edge-on. Closed, it goes back, unless somebody has moved it meanwhile.
+    void faceSection(SectionPlace& place);
+    void turnFromSection();
     void wish();        // tells the drawing thread what is to be seen
     void eyeMoved();    // and the hand, and listeners
     void hoverAgain();  // under the pointer that stood still while the eye moved

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tools on the picture, and what of them is allowed.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "desktop/picture/view_state.h"
@@ -84,10 +85,12 @@ void ViewWidget::setSection(std::optional<SectionPlace> place) {
         if (!std::exchange(s.sectionPlaced, true)) place->offsetMm = s.bounds.centre()[axisAcross(place->direction)];
         const int axis = axisAcross(place->direction);
         place->offsetMm = std::clamp(place->offsetMm, s.bounds.min[axis], s.bounds.max[axis]);
+        if (!s.section || s.section->direction != place->direction) s.faceSection(*place);
         s.lastSection = *place;
     }
     if (place == s.section) return;
     s.section = place;
+    if (!place) s.turnFromSection();
     s.probe->setPlane(place ? std::optional(planeOf(*place)) : std::nullopt);
     s.layOut();
     s.wish();
@@ -95,6 +98,28 @@ void ViewWidget::setSection(std::optional<SectionPlace> place) {
     if (!place && s.tool == Tool::section) setTool(Tool::drill);
     emit sectionChanged(place.has_value());
 }
+void ViewWidget::State::faceSection(SectionPlace& place) {
+    constexpr double kSeen = 0.25, kTurned = 0.64;  // cosines of line of sight and the section's normal
+    const core::Vec3 towards = -camera.forward();
+    if (towards.dot(planeOf(place).normal) < 0.0) place.flipped = !place.flipped;
+    const core::Vec3 normal = planeOf(place).normal;
+    if (towards.dot(normal) > kSeen) return;
+    if (!beforeSection) beforeSection = camera;
+    const core::Vec3 along = (towards - normal * towards.dot(normal)).normalized();
+    const double distanceMm = camera.distanceMm();
+    camera.eyeMm = camera.targetMm + distanceMm * (kTurned * normal + std::sqrt(1.0 - kTurned * kTurned) * along);
+    camera.up = core::Vec3::UnitZ();
+    facingSection = camera;
+    eyeMoved();
+}
+
+void ViewWidget::State::turnFromSection() {
+    const auto before = std::exchange(beforeSection, std::nullopt), facing = std::exchange(facingSection, std::nullopt);
+    if (!before || !facing || facing->eyeMm != camera.eyeMm || facing->targetMm != camera.targetMm) return;
+    camera = *before;
+    eyeMoved();
+}
+
 std::optional<SectionPlace> ViewWidget::section() const {
     return state_->section;
 }

@@ -373,7 +373,7 @@ QSize ViewWidget::sizeHint() const {
     return {960, 640};
 }
 QSize ViewWidget::minimumSizeHint() const {
-    return {320, 240};
+    return {200, 120};
 }
 
 void ViewWidget::paintEvent(QPaintEvent*) {

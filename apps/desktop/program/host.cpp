@@ -64,6 +64,8 @@ Host::Host(QApplication& application, const CommandLine& line, const Simulator::
       settings_(options.folders.settingsFile),
       simulator_(asAsked(options, line, school_)) {
     fillIn(settings_, school_);
+    // What goes over from a window to the next of another language, and no further.
+    settings_.remove(QStringLiteral("passing"));
     const QString theme = settings_.value(QStringLiteral("window/theme"), QStringLiteral("system")).toString();
     chooseAppearance(theme == QLatin1String("dark")    ? Appearance::dark
                      : theme == QLatin1String("light") ? Appearance::light

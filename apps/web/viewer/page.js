@@ -144,7 +144,7 @@ export class ReviewPage {
         /** @type {Vec3} */
         const targetMm = [(low[0] + high[0]) / 2, (low[1] + high[1]) / 2, high[2] - crown / 2];
         /** @type {Record<string, [number, number]>} */
-        const views = { oblique: [-90 * b + 25, 50], occlusal: [-90 * b, 89.9], buccal: [90 * b, 0], lingual: [-90 * b, 0], mesial: [0, 0], distal: [180, 0] };
+        const views = { oblique: [56 * b, 41], occlusal: [90 * b, 89.9], buccal: [90 * b, 0], lingual: [-90 * b, 0], mesial: [0, 0], distal: [180, 0] };
         const [yawDeg, pitchDeg] = views[name];
         return { targetMm, yawDeg, pitchDeg, distanceMm: Math.max(wide, crown) * 2.9 };
     }

@@ -54,6 +54,8 @@ class PointerCourse {
         const core::Pose start = startPose(box, 36, buccalSign);
         box.min.z() = box.max.z() - crownShare * box.size().z();
         camera = view::standardView(eye, box, buccalSign, viewport);
+        // With buccal at the top: the places of the courses were chosen so.
+        if (eye == view::StandardView::occlusal) camera.up = -camera.up;
         mailbox = std::make_shared<device::PointerMailbox>();
         hand = std::make_unique<PointerController>(
             mailbox, start, [this](const view::Ray& ray) { return probe.cast(ray.originMm, ray.direction); });

@@ -190,7 +190,7 @@ TEST(Camera, StandardViewsLookFromTheirSide) {
         const auto forward = [&](StandardView view) { return standardView(view, box, buccal, kViewport).forward(); };
         const auto up = [&](StandardView view) { return standardView(view, box, buccal, kViewport).upward(); };
         EXPECT_LT((forward(StandardView::occlusal) - Vec3(0, 0, -1)).norm(), 1e-9);
-        EXPECT_LT((up(StandardView::occlusal) - Vec3(0, y, 0)).norm(), 1e-9) << "buccal on top";
+        EXPECT_LT((up(StandardView::occlusal) - Vec3(0, -y, 0)).norm(), 1e-9) << "lingual on top";
         EXPECT_LT((forward(StandardView::buccal) - Vec3(0, -y, 0)).norm(), 1e-9);
         EXPECT_LT((forward(StandardView::lingual) - Vec3(0, y, 0)).norm(), 1e-9);
         EXPECT_LT((forward(StandardView::mesial) - Vec3(-1, 0, 0)).norm(), 1e-9);

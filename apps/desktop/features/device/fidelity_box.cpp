@@ -7,7 +7,6 @@
 #include <QLabel>
 #include <QProgressBar>
 #include <QPushButton>
-#include <QSpinBox>
 #include <QTreeWidget>
 #include <QVBoxLayout>
 #include <algorithm>
@@ -29,7 +28,7 @@ FidelityBox::FidelityBox(QWidget* parent) : QWidget(parent) {
     start_ = named(new QPushButton(tr("Check now"), this), "fidelityStart", tr("Check now"),
                    tr("Measures for as long as the field beside it says"));
     row->addWidget(start_);
-    seconds_ = named(new QSpinBox(this), "fidelitySeconds", tr("Seconds"), tr("How long to measure"));
+    seconds_ = named(new WholeField(this), "fidelitySeconds", tr("Seconds"), tr("How long to measure"));
     seconds_->setRange(2, 600);
     seconds_->setValue(10);
     seconds_->setSuffix(tr(" s"));

@@ -6,13 +6,13 @@
 #include <QWidget>
 #include <optional>
 
+#include "desktop/widgets/number_field.h"
 #include "handpiece/devices/fidelity/fidelity.h"
 
 class QCheckBox;
 class QLabel;
 class QProgressBar;
 class QPushButton;
-class QSpinBox;
 class QTreeWidget;
 
 namespace handpiece::desktop {
@@ -45,7 +45,7 @@ class FidelityBox : public QWidget {
 
     std::optional<fidelity::Report> report_;
     bool available_ = false, running_ = false;
-    QSpinBox* seconds_;
+    WholeField* seconds_;
     QCheckBox* push_;
     QPushButton *start_, *cancel_, *save_;
     QProgressBar* progress_;

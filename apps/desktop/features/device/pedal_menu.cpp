@@ -3,10 +3,16 @@
 
 #include <QActionGroup>
 
+#include "desktop/framework/mnemonics.h"
+
 namespace handpiece::desktop {
 
 PedalMenu::PedalMenu(Foot& foot, Settings& settings, Notices& notices, QWidget* window)
-    : QObject(window), foot_(foot), settings_(settings), notices_(notices), menu_(new QMenu(tr("Foot pedal"), window)) {
+    : QObject(window),
+      foot_(foot),
+      settings_(settings),
+      notices_(notices),
+      menu_(withMnemonics(new QMenu(tr("Foot pedal"), window))) {
     menu_->setObjectName(QStringLiteral("menuPedal"));
     menu_->setToolTipsVisible(true);
     connect(menu_, &QMenu::aboutToShow, &foot_, &Foot::look);

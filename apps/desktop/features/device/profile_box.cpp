@@ -3,7 +3,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QPushButton>
 #include <QSignalBlocker>
@@ -47,16 +46,15 @@ ProfileBox::ProfileBox(Extent extent, QWidget* parent) : QWidget(parent) {
                         tr("Where the hand is now, it has the bur over the tooth from now on"));
     form->addRow(tr("Placing"), place);
     connect(place, &QPushButton::clicked, this, &ProfileBox::placeHereRequested);
-    force_ = named(new QDoubleSpinBox(this), "profileForce", tr("Force"),
+    force_ = named(new DecimalField(this), "profileForce", tr("Force"),
                    tr("All forces times this; the device's limits stay. Below 100 % everything feels softer and the "
                       "motors stay cooler."));
     force_->setRange(10.0, 200.0);
     force_->setSingleStep(10.0);
     force_->setDecimals(0);
     force_->setSuffix(tr(" %"));
-    force_->setKeyboardTracking(false);
     form->addRow(tr("Force"), force_);
-    connect(force_, &QDoubleSpinBox::valueChanged, this, &ProfileBox::take);
+    connect(force_, &DecimalField::valueChanged, this, &ProfileBox::take);
     passivity_ = tick(form, "profilePassivity", tr("Passivity controller"),
                       tr("Takes out energy that the tooth did not give, so that the stylus never buzzes or kicks"));
     friction_ = tick(form, "profileFriction", tr("Friction compensation"),

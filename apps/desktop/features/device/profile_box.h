@@ -5,12 +5,12 @@
 
 #include <QWidget>
 
+#include "desktop/widgets/number_field.h"
 #include "handpiece/devices/workspace/profile.h"
 
 class QCheckBox;
 class QComboBox;
 class QFormLayout;
-class QDoubleSpinBox;
 class QPushButton;
 
 namespace handpiece::desktop {
@@ -40,7 +40,7 @@ class ProfileBox : public QWidget {
 
     workspace::Profile profile_;
     QComboBox *hand_, *scale_, *bur_, *clutch_ = nullptr;
-    QDoubleSpinBox* force_ = nullptr;
+    DecimalField* force_ = nullptr;
     QCheckBox *passivity_ = nullptr, *friction_ = nullptr, *thermal_ = nullptr, *eventForce_ = nullptr,
               *vibration_ = nullptr;
 };

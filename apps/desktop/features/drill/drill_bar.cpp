@@ -12,7 +12,6 @@
 #include <QScrollBar>
 #include <QSignalBlocker>
 #include <QSlider>
-#include <QSpinBox>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -134,10 +133,9 @@ DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
     speedCaption_ = new QLabel(tr("Speed"), this);
     slider_ = named(new QSlider(Qt::Horizontal, this), "speedSlider", tr("Set speed"),
                     tr("Set speed, with the pedal down and the bur in the air (+ and -)"));
-    spin_ = named(new QSpinBox(this), "speedSpin", tr("Set speed in rpm"));
+    spin_ = named(new WholeField(this), "speedSpin", tr("Set speed in rpm"));
     spin_->setGroupSeparatorShown(true);
     spin_->setSuffix(tr(" rpm"));
-    spin_->setKeyboardTracking(false);
     speedCaption_->setBuddy(slider_);
     speedRow->addWidget(speedCaption_);
     speedRow->addWidget(slider_, 1);
@@ -187,7 +185,7 @@ DrillBar::DrillBar(QWidget* parent) : QWidget(parent) {
         takeSpeed(drive.freeSpeedRpm, true);
     });
     connect(slider_, &QSlider::valueChanged, this, [this](int value) { takeSpeed(value, true); });
-    connect(spin_, &QSpinBox::valueChanged, this, [this](int value) { takeSpeed(value, true); });
+    connect(spin_, &WholeField::valueChanged, this, [this](int value) { takeSpeed(value, true); });
 
     setBurs(instrument::catalogue());
     setDrives(instrument::drives());
@@ -205,6 +203,15 @@ void DrillBar::setBurs(const std::vector<instrument::CatalogueEntry>& burs) {
             kind_->addItem(shapeName(info.shape), static_cast<int>(info.shape));
     filter_->setShape(-1);
     showBur();
+}
+
+void DrillBar::setShown(const Shown& shown) {
+    kind_->setCurrentIndex(std::max(0, kind_->findData(shown.shape)));
+    search_->setText(shown.words);
+}
+
+DrillBar::Shown DrillBar::shown() const {
+    return {search_->text(), kind_->currentData().isValid() ? kind_->currentData().toInt() : -1};
 }
 
 void DrillBar::setAllowedBurs(const QStringList& names) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "desktop/widgets/detail.h"
+#include "desktop/widgets/number_field.h"
 #include "handpiece/model/instrument/bur.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/rotor.h"
@@ -19,7 +20,6 @@ class QLineEdit;
 class QListView;
 class QPushButton;
 class QSlider;
-class QSpinBox;
 class QToolButton;
 class QVBoxLayout;
 
@@ -36,6 +36,13 @@ class DrillBar : public QWidget {
     explicit DrillBar(QWidget* parent = nullptr);
 
     void setBurs(const std::vector<instrument::CatalogueEntry>& burs);
+    /// What is looked for in the list, and of which shape; -1: of all.
+    struct Shown {
+        QString words;
+        int shape = -1;
+    };
+    void setShown(const Shown& shown);
+    [[nodiscard]] Shown shown() const;
     /// Only these may be chosen; empty: all. The others stay visible, grey, with the reason.
     void setAllowedBurs(const QStringList& names);
     /// The bur in hand. A name that no bur of the list has is shown as a bur of one's own.
@@ -86,7 +93,7 @@ class DrillBar : public QWidget {
     SpeedDial* dial_;
     QLabel *speedCaption_, *stall_;
     QSlider* slider_;
-    QSpinBox* spin_;
+    WholeField* spin_;
     std::vector<instrument::Drive> drives_;
     QString bur_, drive_;
     QStringList allowed_;

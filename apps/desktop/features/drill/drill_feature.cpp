@@ -73,6 +73,17 @@ DrillFeature::DrillFeature(const FeatureContext& context)
     connect(&simulator_, &Simulator::refused, this, tellLocked);
     connect(&simulator_, &Simulator::settingsChanged, this, &DrillFeature::showSettings);
     connect(&simulator_.hands(), &DeviceManager::changed, this, &DrillFeature::showSettings);
+    keepShown();
+}
+
+/// Which burs are listed goes over to the window of another language.
+void DrillFeature::keepShown() {
+    const QString words = QStringLiteral("passing/burWords"), shape = QStringLiteral("passing/burShape");
+    bar_->setShown({settings_.value(words).toString(), settings_.value(shape, -1).toInt()});
+    connect(&window_, &MainWindow::aboutToRemember, this, [this, words, shape] {
+        settings_.set(words, bar_->shown().words);
+        settings_.set(shape, bar_->shown().shape);
+    });
 }
 
 void DrillFeature::addDocks() {

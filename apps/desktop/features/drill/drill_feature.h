@@ -30,6 +30,7 @@ class DrillFeature : public Feature {
     void connectCommands();
     void connectPanels();
     void connectWelcome();
+    void keepShown();
     void recallBindings();
     void editBindings();
     void setTouching(bool touching);

@@ -3,7 +3,6 @@
 
 #include <QComboBox>
 #include <QCoreApplication>
-#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QPushButton>
@@ -161,13 +160,12 @@ ParameterBox::Row ParameterBox::addRow(QGridLayout* grid, int row, const QString
     r.slider->setPageStep(25);
     r.slider->setTickPosition(QSlider::TicksBelow);
     r.slider->setTickInterval(kStepsPerOne);
-    r.spin = new QDoubleSpinBox(this);
+    r.spin = new DecimalField(this);
     r.spin->setObjectName(object + "Spin");
     r.spin->setRange(0.0, kLargest);
     r.spin->setSingleStep(0.05);
     r.spin->setDecimals(2);
     r.spin->setPrefix(QStringLiteral("× "));
-    r.spin->setKeyboardTracking(false);
     r.name->setBuddy(r.slider);
     grid->addWidget(r.name, row, 0);
     grid->addWidget(r.slider, row, 1);
@@ -179,7 +177,7 @@ ParameterBox::Row ParameterBox::addRow(QGridLayout* grid, int row, const QString
         emit multipliersChanged(multipliers_.stiffness, multipliers_.damping, multipliers_.friction);
     };
     connect(r.slider, &QSlider::valueChanged, this, [take](int position) { take(double(position) / kStepsPerOne); });
-    connect(r.spin, &QDoubleSpinBox::valueChanged, this, take);
+    connect(r.spin, &DecimalField::valueChanged, this, take);
     return r;
 }
 

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "desktop/widgets/detail.h"
+#include "desktop/widgets/number_field.h"
 #include "handpiece/model/case/tissue.h"
 #include "handpiece/tick/force/parameters.h"
 
 class QComboBox;
-class QDoubleSpinBox;
 class QGridLayout;
 class QLabel;
 class QPushButton;
@@ -74,7 +74,7 @@ class ParameterBox : public QWidget {
     struct Row {
         QLabel* name;
         QSlider* slider;
-        QDoubleSpinBox* spin;
+        DecimalField* spin;
     };
     Row addRow(QGridLayout* grid, int row, const QString& object, double Multipliers::*value);
     void showMultipliers();

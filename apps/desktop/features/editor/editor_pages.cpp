@@ -4,7 +4,6 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QCoreApplication>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QLineEdit>
@@ -14,7 +13,6 @@
 #include <QPushButton>
 #include <QScrollArea>
 #include <QSignalBlocker>
-#include <QSpinBox>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <cmath>
@@ -51,11 +49,11 @@ void setText(QPlainTextEdit* field, const QString& text) {
     if (field->toPlainText() != text) field->setPlainText(text);
 }
 /// A value that is typed keeps its text.
-void setValue(QDoubleSpinBox* field, double value) {
+void setValue(DecimalField* field, double value) {
     if (std::abs(field->value() - value) > 0.5 * std::pow(10.0, -field->decimals())) field->setValue(value);
 }
-QDoubleSpinBox* millimetres(QWidget* parent, const char* name, const QString& words) {
-    auto* field = named(new QDoubleSpinBox(parent), name, words);
+DecimalField* millimetres(QWidget* parent, const char* name, const QString& words) {
+    auto* field = named(new DecimalField(parent), name, words);
     field->setRange(0.0, 3.0);
     field->setDecimals(2);
     field->setSingleStep(0.05);
@@ -78,8 +76,8 @@ ToothPage::ToothPage(Change change) : EditorPage(std::move(change)) {
             fdi_->addItem(QString::number(10 * quadrant + tooth), 10 * quadrant + tooth);
     fdi_->setCurrentIndex(fdi_->findData(46));
     form->addRow(tr("Tooth (FDI)"), fdi_);
-    seed_ =
-        named(new QSpinBox(this), "editorSeed", tr("Patient"), tr("Another number is another patient; 0 the average"));
+    seed_ = named(new WholeField(this), "editorSeed", tr("Patient"),
+                  tr("Another number is another patient; 0 the average"));
     seed_->setRange(0, 99999);
     seed_->setValue(1);
     form->addRow(tr("Patient"), seed_);
@@ -174,11 +172,11 @@ PreparationPage::PreparationPage(Change change) : EditorPage(std::move(change)) 
     new QFormLayout(numbers_);
     form_->addRow(numbers_);
     form_->addRow(heading(tr("What may go beside it"), this));
-    const auto row = [&](QDoubleSpinBox*& field, const char* name, const QString& words, const QString& tip, auto set) {
+    const auto row = [&](DecimalField*& field, const char* name, const QString& words, const QString& tip, auto set) {
         field = millimetres(this, name, words);
         field->setToolTip(tip);
         form_->addRow(words, field);
-        connect(field, &QDoubleSpinBox::valueChanged, this, [this, name, set](double value) {
+        connect(field, &DecimalField::valueChanged, this, [this, name, set](double value) {
             if (showing_) return;
             change_(name, [&](Content& c) {
                 if (c.preparation) set(*c.preparation, value);
@@ -209,7 +207,7 @@ void PreparationPage::showNumbers(const preparation::Template* of) {
     if (of == nullptr) return;
     for (const preparation::Parameter& p : of->parameters) {
         const std::string name(p.name);
-        auto* field = new QDoubleSpinBox(numbers_);
+        auto* field = new DecimalField(numbers_);
         field->setObjectName(QStringLiteral("editorNumber_") + plain(p.name));
         field->setAccessibleName(parameterWords(p.name));
         field->setToolTip(tr("%1 to %2, usually %3").arg(p.least).arg(p.most).arg(p.usual));
@@ -218,7 +216,7 @@ void PreparationPage::showNumbers(const preparation::Template* of) {
         field->setSingleStep(name.ends_with("_deg") ? 1.0 : 0.1);
         field->setSuffix(QLatin1Char(' ') + parameterUnit(p.name));
         rows->addRow(parameterWords(p.name), field);
-        connect(field, &QDoubleSpinBox::valueChanged, this, [this, name](double value) {
+        connect(field, &DecimalField::valueChanged, this, [this, name](double value) {
             if (showing_) return;
             change_(name.c_str(), [&](Content& c) { c = draft::withNumber(std::move(c), name, value); });
         });
@@ -424,7 +422,7 @@ void PreparationPage::show(const Content& content) {
             setValue(field, recipe->number(name));
     tooth_ = content.tooth;
     recipe_ = content.preparation;
-    for (QDoubleSpinBox* field : {leewaySide_, leewayFloor_, pulp_})
+    for (DecimalField* field : {leewaySide_, leewayFloor_, pulp_})
         field->setEnabled(recipe != nullptr);
     const preparation::Recipe plainOne;
     const preparation::Recipe& r = recipe ? *recipe : plainOne;
@@ -455,7 +453,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     drive_->addItem(tr("The student's choice"), QString());
     for (const instrument::Drive& drive : instrument::drives())
         drive_->addItem(driveTitle(QString::fromStdString(drive.name)), QString::fromStdString(drive.name));
-    speed_ = named(new QDoubleSpinBox(this), "editorSpeed", tr("Its speed"), tr("That it is set to at the beginning"));
+    speed_ = named(new DecimalField(this), "editorSpeed", tr("Its speed"), tr("That it is set to at the beginning"));
     speed_->setDecimals(0);
     speed_->setSuffix(tr(" rpm"));
     helps_ = named(new QListWidget(this), "editorHelps", tr("Helps that are locked"));
@@ -466,7 +464,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         item->setCheckState(Qt::Unchecked);
     }
     timed_ = named(new QCheckBox(tr("At most"), this), "editorTimed", tr("A time limit"));
-    minutes_ = named(new QDoubleSpinBox(this), "editorMinutes", tr("Minutes"));
+    minutes_ = named(new DecimalField(this), "editorMinutes", tr("Minutes"));
     minutes_->setRange(0.1, 24 * 60);
     minutes_->setDecimals(1);
     minutes_->setValue(30);
@@ -480,7 +478,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     liveBar_ =
         named(new QCheckBox(tr("Show during the work what is gone of the target"), this), "editorLiveBar",
               tr("Show during the work what is gone of the target"), tr("A bar for target, leeway and what must stay"));
-    voxel_ = named(new QDoubleSpinBox(this), "editorVoxel", tr("Voxel of the tooth"),
+    voxel_ = named(new DecimalField(this), "editorVoxel", tr("Voxel of the tooth"),
                    tr("The same for every student: a score never hangs on their settings"));
     voxel_->setRange(20, 400);
     voxel_->setDecimals(1);
@@ -503,7 +501,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         eye->addWidget(new QLabel(what[row], this), row, 0);
         for (int k = 0; k < 3; ++k) {
             const char axis[] = {"XYZ"[k], '\0'};
-            auto* field = named(new QDoubleSpinBox(this), "", what[row] + QLatin1Char(' ') + QLatin1String(axis));
+            auto* field = named(new DecimalField(this), "", what[row] + QLatin1Char(' ') + QLatin1String(axis));
             field->setObjectName(QLatin1String(names[row]) + QLatin1String(axis));
             field->setRange(row == 2 ? -1.0 : -500.0, row == 2 ? 1.0 : 500.0);
             field->setDecimals(row == 2 ? 3 : 2);
@@ -511,7 +509,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
             field->setButtonSymbols(QAbstractSpinBox::NoButtons);
             eye->addWidget(field, row, 1 + k);
             eye_.push_back(field);
-            connect(field, &QDoubleSpinBox::valueChanged, this, [this, row, k](double value) {
+            connect(field, &DecimalField::valueChanged, this, [this, row, k](double value) {
                 if (showing_) return;
                 change_("view", [&](Content& c) {
                     if (!c.exercise.view) return;
@@ -572,7 +570,7 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
             c.speedRpm.reset();
         });
     });
-    connect(speed_, &QDoubleSpinBox::valueChanged, this, [this](double rpm) {
+    connect(speed_, &DecimalField::valueChanged, this, [this](double rpm) {
         if (showing_) return;
         change_("speed", [&](Content& c) {
             c.speedRpm = rpm;
@@ -598,8 +596,8 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
         });
     };
     connect(timed_, &QCheckBox::toggled, this, setTime);
-    connect(minutes_, &QDoubleSpinBox::valueChanged, this, setTime);
-    connect(voxel_, &QDoubleSpinBox::valueChanged, this, [this](double um) {
+    connect(minutes_, &DecimalField::valueChanged, this, setTime);
+    connect(voxel_, &DecimalField::valueChanged, this, [this](double um) {
         if (!showing_) change_("voxel", [&](Content& c) { c.voxelMm = 1e-3 * um; });
     });
     const auto tickOf = [this](QCheckBox* box, bool Content::*flag) {
@@ -690,7 +688,7 @@ TextsPage::TextsPage(Change change) : EditorPage(std::move(change)) {
     auto* form = new QFormLayout(this);
     id_ = named(new QLineEdit(this), "editorId", tr("Short name"), tr("Small letters, digits, '-'"));
     version_ =
-        named(new QSpinBox(this), "editorVersion", tr("Version"), tr("Raise it with each change to be told apart"));
+        named(new WholeField(this), "editorVersion", tr("Version"), tr("Raise it with each change to be told apart"));
     version_->setRange(1, 99999);
     titleEn_ = named(new QLineEdit(this), "editorTitleEn", tr("Title, English"));
     titleJa_ = named(new QLineEdit(this), "editorTitleJa", tr("Title, Japanese"));
@@ -713,7 +711,7 @@ TextsPage::TextsPage(Change change) : EditorPage(std::move(change)) {
     form->addRow(tr("What to do, in it"), whatOther_);
     connect(id_, &QLineEdit::textEdited, this,
             [this](const QString& text) { change_("id", [&](Content& c) { c.id = text.toStdString(); }); });
-    connect(version_, &QSpinBox::valueChanged, this, [this](int version) {
+    connect(version_, &WholeField::valueChanged, this, [this](int version) {
         if (!showing_) change_("version", [&](Content& c) { c.version = version; });
     });
     const auto put = [](cases::Texts& texts, const char* language, const QString& text) {

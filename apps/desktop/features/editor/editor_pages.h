@@ -7,20 +7,19 @@
 #include <vector>
 
 #include "desktop/features/editor/editor_page.h"
+#include "desktop/widgets/number_field.h"
 #include "desktop/work/zone_glass.h"
 #include "handpiece/assess/draft/handles.h"
 #include "handpiece/senses/view/camera.h"
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
 class QLineEdit;
 class QListWidget;
 class QPlainTextEdit;
 class QPushButton;
-class QSpinBox;
 
 namespace handpiece::desktop {
 
@@ -43,7 +42,7 @@ class ToothPage : public EditorPage {
 
   private:
     QComboBox *fdi_, *layers_;
-    QSpinBox* seed_;
+    WholeField* seed_;
     QLabel *now_, *work_;
     std::vector<QWidget*> buttons_;
 };
@@ -105,8 +104,8 @@ class PreparationPage : public EditorPage {
     QWidget* numbers_ = nullptr;
     QFormLayout* form_;
     std::string shown_ = "?";  ///< the template whose numbers are there
-    std::vector<std::pair<std::string, QDoubleSpinBox*>> fields_;
-    QDoubleSpinBox *leewaySide_, *leewayFloor_, *pulp_;
+    std::vector<std::pair<std::string, DecimalField*>> fields_;
+    DecimalField *leewaySide_, *leewayFloor_, *pulp_;
 };
 
 /// [editorWork]
@@ -138,10 +137,10 @@ class WorkPage : public EditorPage {
     QComboBox *bur_, *drive_, *level_;
     QListWidget *burs_, *helps_;
     QCheckBox *timed_, *hard_, *ownJudgement_, *liveBar_;
-    QDoubleSpinBox *minutes_, *voxel_, *speed_;
+    DecimalField *minutes_, *voxel_, *speed_;
     QLabel* view_;
     QPushButton* showView_;
-    std::vector<QDoubleSpinBox*> eye_;  ///< of the start view: eye, target, up
+    std::vector<DecimalField*> eye_;  ///< of the start view: eye, target, up
 };
 
 /// [editorTexts]
@@ -158,7 +157,7 @@ class TextsPage : public EditorPage {
 
     QComboBox* other_;  ///< a third language, by its tag
     cases::Texts title_, what_;
-    QSpinBox* version_;
+    WholeField* version_;
 };
 
 }  // namespace handpiece::desktop

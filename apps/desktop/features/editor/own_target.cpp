@@ -2,7 +2,6 @@
 #include "desktop/features/editor/own_target.h"
 
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QMouseEvent>
@@ -46,7 +45,7 @@ OwnTarget::OwnTarget(SolidView& picture, QFormLayout& form, EditorPage::Change c
     brush_->addItems({tr("paints"), tr("erases"), tr("turns the tooth")});
     brushLabel_ = new QLabel(tr("Left button"), page);
     form.addRow(brushLabel_, brush_);
-    radius_ = named(new QDoubleSpinBox(page), "editorBrushRadius", tr("Radius of the brush"));
+    radius_ = named(new DecimalField(page), "editorBrushRadius", tr("Radius of the brush"));
     radius_->setRange(preparation::kLeastBrushMm, preparation::kMostBrushMm);
     radius_->setDecimals(2);
     radius_->setSingleStep(0.05);

@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "desktop/features/editor/editor_page.h"
+#include "desktop/widgets/number_field.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/senses/view/renderer.h"
 
 class QComboBox;
-class QDoubleSpinBox;
 class QFormLayout;
 class QLabel;
 class QPointF;
@@ -55,7 +55,7 @@ class OwnTarget : public QObject {
     QPushButton* work_;
     QComboBox *like_, *brush_;
     QLabel *likeLabel_, *brushLabel_, *radiusLabel_;
-    QDoubleSpinBox* radius_;
+    DecimalField* radius_;
     bool isPaintable_ = false, isPainted_ = false;
     std::shared_ptr<const cases::Case> tooth_, brushed_;    ///< brushed_: of the tree
     std::shared_ptr<const geometry::TriangleTree> canvas_;  ///< of its surface

@@ -3,7 +3,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QHeaderView>
 #include <QLabel>
@@ -110,7 +109,7 @@ RubricPage::RubricPage(Change change) : EditorPage(std::move(change)) {
         });
     };
     connect(hasMark_, &QCheckBox::toggled, this, setMark);
-    connect(mark_, &QDoubleSpinBox::valueChanged, this, setMark);
+    connect(mark_, &DecimalField::valueChanged, this, setMark);
 }
 
 QWidget* RubricPage::criteriaTab() {
@@ -158,7 +157,7 @@ QWidget* RubricPage::criteriaTab() {
     sum_->setWordWrap(false);
     below->addWidget(sum_);
     hasMark_ = named(new QCheckBox(tr("Pass from"), this), "editorHasPassMark", tr("There is a pass mark"));
-    mark_ = named(new QDoubleSpinBox(this), "editorPassMark", tr("Pass mark"), tr("Of the greatest score"));
+    mark_ = named(new DecimalField(this), "editorPassMark", tr("Pass mark"), tr("Of the greatest score"));
     mark_->setRange(0.1, 100);
     mark_->setDecimals(1);
     mark_->setValue(60);

@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "desktop/features/editor/editor_page.h"
+#include "desktop/widgets/number_field.h"
 
 class QCheckBox;
 class QComboBox;
 class QLabel;
-class QDoubleSpinBox;
 class QLineEdit;
 class QPushButton;
 class QTabWidget;
@@ -71,7 +71,7 @@ class RubricPage : public EditorPage {
     QComboBox* shipped_;
     QTableWidget* table_;
     QCheckBox* hasMark_;
-    QDoubleSpinBox* mark_;
+    DecimalField* mark_;
     QTabWidget* tabs_;
     CurveView* curve_;
     QLabel* of_;

@@ -18,6 +18,7 @@
 #include "desktop/picture/solid_view.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
+#include "desktop/widgets/scrolled.h"
 #include "desktop/widgets/theme.h"
 #include "desktop/work/bur_words.h"
 #include "handpiece/app/course/shipped_exercises.h"
@@ -69,13 +70,13 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     auto* folder = named(new QPushButton(tr("Folder..."), this), "exercisesFolder", tr("Folder..."),
                          tr("Choose a folder with exercises of your school"));
     left->addWidget(folder);
-    auto* right = new QVBoxLayout;
+    auto* about = new QVBoxLayout;
     const auto text = [&](const char* object, const QString& name) {
         auto* label = named(new QLabel(this), object, name);
         label->setTextFormat(Qt::PlainText);
         label->setWordWrap(true);
         label->setTextInteractionFlags(Qt::TextSelectableByMouse);
-        right->addWidget(label);
+        about->addWidget(label);
         return label;
     };
     title_ = text("exercisesTitle", tr("Title of the exercise"));
@@ -85,17 +86,20 @@ ExercisesDialog::ExercisesDialog(fs::path madeIn, QWidget* parent)
     best_ = text("exercisesBest", tr("Best so far"));
     best_->setFont(scaledFont(font(), 1.0, true));
     due_ = text("exercisesDue", tr("Due"));
-    right->addWidget(view_, 1);
+    view_->setMinimumHeight(200);
+    about->addWidget(view_, 1);
     asks_ = text("exercisesAsks", tr("What is judged"));
-    right->removeWidget(asks_);
+    about->removeWidget(asks_);
     auto* scroll = new QScrollArea(this);
     scroll->setWidget(asks_);
     scroll->setWidgetResizable(true);
     scroll->setFrameShape(QFrame::NoFrame);
     scroll->setMaximumHeight(130);
     asks_->setAlignment(Qt::AlignTop | Qt::AlignLeft);
-    right->addWidget(scroll);
+    about->addWidget(scroll);
     note_ = text("exercisesNote", tr("What is wrong"));
+    auto* right = new QVBoxLayout;
+    right->addWidget(new Scrolled(about, this), 1);
     auto* below = new QHBoxLayout;
     progress_->setRange(0, 1000);
     progress_->setTextVisible(false);

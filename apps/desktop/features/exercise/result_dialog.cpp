@@ -10,7 +10,6 @@
 #include <QPlainTextEdit>
 #include <QPushButton>
 #include <QRadioButton>
-#include <QSpinBox>
 #include <QStackedWidget>
 #include <QTableWidget>
 #include <QVBoxLayout>
@@ -21,6 +20,7 @@
 #include "desktop/picture/solid_view.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
+#include "desktop/widgets/scrolled.h"
 #include "desktop/widgets/theme.h"
 #include "handpiece/app/course/shipped_exercises.h"
 #include "handpiece/app/report/assessment_report.h"
@@ -64,7 +64,7 @@ QWidget* ResultDialog::makeJudging() {
     column->addWidget(asked);
     auto* row = new QHBoxLayout;
     row->addWidget(new QLabel(tr("Of all points I expect"), page));
-    percent_ = named(new QSpinBox(page), "judgePercent", tr("Of all points I expect"));
+    percent_ = named(new WholeField(page), "judgePercent", tr("Of all points I expect"));
     percent_->setRange(0, 100);
     percent_->setSuffix(tr(" %"));
     row->addWidget(percent_);
@@ -171,7 +171,9 @@ QWidget* ResultDialog::makeResult() {
     row->addLayout(left, 3);
     row->addLayout(right, 2);
     auto* column = new QVBoxLayout(page);
-    column->addLayout(row, 1);
+    table_->setMinimumHeight(150);
+    tooth_->setMinimumHeight(200);
+    column->addWidget(new Scrolled(row, page), 1);
     note_ = note({}, page, "resultNote");
     column->addWidget(note_);
     column->addLayout(below);

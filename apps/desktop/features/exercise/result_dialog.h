@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "desktop/widgets/number_field.h"
 #include "desktop/work/simulator.h"
 #include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/school/store/store.h"
@@ -16,7 +17,6 @@ class QLabel;
 class QListWidget;
 class QPlainTextEdit;
 class QPushButton;
-class QSpinBox;
 class QStackedWidget;
 class QTableWidget;
 class QVBoxLayout;
@@ -91,7 +91,7 @@ class ResultDialog : public QDialog {
     bool isAsking_ = false;
     bool hasTooth_ = false;  ///< of this result one was shown, so that the eye has its place
     QStackedWidget* pages_;
-    QSpinBox* percent_;
+    WholeField* percent_;
     QPlainTextEdit* words_;
     QLabel *title_, *score_, *teacher_, *why_, *time_, *compared_, *proof_;
     QListWidget* comments_;

@@ -7,11 +7,11 @@
 #include <QHBoxLayout>
 #include <QLabel>
 #include <QMenu>
-#include <QSpinBox>
 #include <QVBoxLayout>
 #include <algorithm>
 #include <set>
 
+#include "desktop/framework/mnemonics.h"
 #include "desktop/widgets/parts.h"
 
 namespace handpiece::desktop {
@@ -59,9 +59,9 @@ ChartDialog::ChartDialog(Setting setting, QWidget* parent)
                    tr("A patient that the program makes, or a case from the folders of your cases"))),
       notation_(named(new QComboBox, "notationBox", tr("Notation"), tr("How teeth are numbered"))),
       patient_(new QWidget),
-      seed_(named(new QSpinBox, "patientSeed", tr("Patient's number"),
+      seed_(named(new WholeField, "patientSeed", tr("Patient's number"),
                   tr("Another number is another patient; 0 is the average of all"))),
-      age_(named(new QSpinBox, "patientAge", tr("Patient's age"), tr("With age the pulp shrinks and cusps wear"))),
+      age_(named(new WholeField, "patientAge", tr("Patient's age"), tr("With age the pulp shrinks and cusps wear"))),
       inMouth_(named(new QCheckBox(tr("In the whole mouth")), "patientMouth", tr("In the whole mouth"),
                      tr("With the other teeth, gingiva and bone; otherwise the tooth stands alone"))),
       chart_(new ToothChart),
@@ -105,8 +105,8 @@ ChartDialog::ChartDialog(Setting setting, QWidget* parent)
         emit notationChosen(index);
     });
     connect(mouth_, &QComboBox::currentIndexChanged, this, &ChartDialog::showMouth);
-    connect(seed_, &QSpinBox::valueChanged, this, &ChartDialog::showMouth);
-    connect(age_, &QSpinBox::valueChanged, this, &ChartDialog::showMouth);
+    connect(seed_, &WholeField::valueChanged, this, &ChartDialog::showMouth);
+    connect(age_, &WholeField::valueChanged, this, &ChartDialog::showMouth);
     connect(chart_, &ToothChart::toothChosen, this, &ChartDialog::choose);
     showMouth();
     readCases(casesIn(setting_.places));
@@ -208,12 +208,12 @@ void ChartDialog::choose(int fdi) {
     for (const Mouth& mouth : mouths_)
         if (mouth.ownTooth == fdi) ofTooth.push_back(mouth);
     if (ofTooth.empty()) return openStarter();
-    auto* menu = new QMenu(this);
+    auto* menu = withMnemonics(new QMenu(this));
     menu->setObjectName(QStringLiteral("chartChoice"));
     menu->setAttribute(Qt::WA_DeleteOnClose);
     connect(menu->addAction(tr("This patient's tooth")), &QAction::triggered, this, openStarter);
     for (const Mouth& mouth : ofTooth)
-        connect(menu->addAction(tr("Case: %1").arg(mouth.name)), &QAction::triggered, this,
+        connect(menu->addAction(menuText(tr("Case: %1").arg(mouth.name))), &QAction::triggered, this,
                 [openCase, mouth, fdi] { openCase(mouth, fdi); });
     menu->setActiveAction(menu->actions().front());
     menu->popup(chart_->mapToGlobal(chart_->centreOf(fdi).toPoint()));

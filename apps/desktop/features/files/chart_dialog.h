@@ -11,12 +11,12 @@
 
 #include "desktop/features/files/tooth_drawing.h"
 #include "desktop/framework/job.h"
+#include "desktop/widgets/number_field.h"
 #include "desktop/work/documents.h"
 
 class QCheckBox;
 class QComboBox;
 class QLabel;
-class QSpinBox;
 
 namespace handpiece::desktop {
 
@@ -60,8 +60,8 @@ class ChartDialog : public QDialog {
     QComboBox* mouth_;
     QComboBox* notation_;
     QWidget* patient_;
-    QSpinBox* seed_;
-    QSpinBox* age_;
+    WholeField* seed_;
+    WholeField* age_;
     QCheckBox* inMouth_;
     ToothChart* chart_;
     QLabel* note_;

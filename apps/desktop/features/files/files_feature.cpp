@@ -14,6 +14,7 @@
 
 #include "desktop/features/files/mend_dialog.h"
 #include "desktop/framework/job_strip.h"
+#include "desktop/framework/mnemonics.h"
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/status_line.h"
 #include "desktop/work/simulator.h"
@@ -61,7 +62,7 @@ constexpr CommandOf<Command> kCommands[] = {
 FilesFeature::FilesFeature(const FeatureContext& context)
     : Feature(context),
       commands_(window_.commands(), kCommands),
-      recent_(new QMenu(tr("Open recent"), window_.shelves().menu(Shelf::file))) {
+      recent_(withMnemonics(new QMenu(tr("Open recent"), window_.shelves().menu(Shelf::file)))) {
     recent_->setObjectName(QStringLiteral("menuRecent"));
     window_.commands().place(in(Shelf::file, 5), recent_->menuAction());
     connect(recent_, &QMenu::aboutToShow, this, &FilesFeature::listRecent);
@@ -286,7 +287,7 @@ void FilesFeature::listRecent() {
     recent_->clear();
     int number = 0;
     for (const QString& file : settings_.recentFiles()) {
-        QAction* action = recent_->addAction(QDir::toNativeSeparators(file));
+        QAction* action = recent_->addAction(menuText(QDir::toNativeSeparators(file)));
         action->setObjectName(QStringLiteral("actionRecent_%1").arg(++number));
         action->setToolTip(tr("Open it again"));
         connect(action, &QAction::triggered, this, [this, file] { window_.openFile(file); });

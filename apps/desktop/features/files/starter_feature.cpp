@@ -6,6 +6,7 @@
 #include <QMenu>
 
 #include "desktop/features/files/chart_dialog.h"
+#include "desktop/framework/mnemonics.h"
 #include "desktop/work/simulator.h"
 
 namespace handpiece::desktop {
@@ -50,7 +51,7 @@ void StarterFeature::openAt(std::size_t faces) {
 }
 
 void StarterFeature::fillMenu() {
-    auto* menu = new QMenu(tr("Resolution of the tooth"), window_.shelves().menu(Shelf::file));
+    auto* menu = withMnemonics(new QMenu(tr("Resolution of the tooth"), window_.shelves().menu(Shelf::file)));
     menu->setObjectName(QStringLiteral("menuResolution"));
     window_.commands().place(in(Shelf::file, 3), menu->menuAction());
     for (const Resolution& r : kResolutions) {

@@ -22,6 +22,7 @@
 #include <QVBoxLayout>
 
 #include "desktop/features/marking/agreement_page.h"
+#include "desktop/framework/mnemonics.h"
 #include "desktop/widgets/parts.h"
 #include "handpiece/app/marking/desk.h"
 
@@ -145,7 +146,7 @@ QWidget* DeskDialog::makeWorks() {
     score_ = named(new QPushButton(tr("Score again"), page), "markingScore", tr("Score again"),
                    tr("Look for work that has come since, and score what has no score"));
     export_ = named(new QPushButton(tr("Export"), page), "markingExport", tr("Export"), tr("Write tables for others"));
-    auto* menu = new QMenu(export_);
+    auto* menu = withMnemonics(new QMenu(export_));
     menu->setObjectName(QStringLiteral("markingExportMenu"));
     const std::pair<const char*, QString> ways[] = {{"codes", tr("Results, codes only (CSV)...")},
                                                     {"files", tr("Results with file names (CSV)...")},

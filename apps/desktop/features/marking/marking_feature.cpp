@@ -17,6 +17,7 @@
 #include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
+#include "handpiece/senses/view/occlusal.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -471,7 +472,7 @@ void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::o
     core::Vec3 along = camera.forward();
     if (const core::Vec3 down(0.0, 0.02, -1.0); !isSeen(along) && isSeen(down.normalized())) {
         along = down.normalized();
-        camera.up = core::Vec3(0.0, simulator_.toothCase()->buccalSign < 0 ? -1.0 : 1.0, 0.0);
+        camera.up = view::occlusalUp(simulator_.toothCase()->buccalSign);
     }
     camera.targetMm = *placeMm;
     camera.eyeMm = *placeMm - kNearMm * along;

@@ -3,7 +3,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QHeaderView>
 #include <QLabel>
@@ -97,7 +96,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
     editing_->setWordWrap(true);
     editing_->setFont(scaledFont(font(), 1.0, true));
     band_ = named(new QComboBox(this), "sheetBand", tr("Band"));
-    points_ = named(new QDoubleSpinBox(this), "sheetPoints", tr("Points"));
+    points_ = named(new DecimalField(this), "sheetPoints", tr("Points"));
     points_->setDecimals(1);
     points_->setSpecialValueText(QStringLiteral("–"));
     critical_ = named(new QComboBox(this), "sheetCritical", tr("Critical error"));
@@ -203,7 +202,7 @@ SheetPanel::SheetPanel(QWidget* parent) : QWidget(parent) {
         connect(field, &QLineEdit::textChanged, this, &SheetPanel::showWhetherReady);
     for (QComboBox* box : {band_, critical_, decision_})
         connect(box, &QComboBox::currentIndexChanged, this, &SheetPanel::showWhetherReady);
-    connect(points_, &QDoubleSpinBox::valueChanged, this, &SheetPanel::showWhetherReady);
+    connect(points_, &DecimalField::valueChanged, this, &SheetPanel::showWhetherReady);
     connect(cannotTell_, &QCheckBox::toggled, this, &SheetPanel::showWhetherReady);
     connect(comments_, &QListWidget::currentRowChanged, this, &SheetPanel::showWhetherReady);
     connect(say_, &QPushButton::clicked, this, &SheetPanel::say);

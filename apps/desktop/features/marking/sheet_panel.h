@@ -10,11 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "desktop/widgets/number_field.h"
 #include "handpiece/app/marking/desk.h"
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QLineEdit;
 class QListWidget;
@@ -114,7 +114,7 @@ class SheetPanel : public QWidget {
     QTreeWidget* criteria_;
     QLabel* editing_;
     QComboBox *band_, *critical_, *decision_;
-    QDoubleSpinBox* points_;
+    DecimalField* points_;
     QCheckBox* cannotTell_;
     QLineEdit *reason_, *decisionReason_, *comment_;
     QPushButton *say_, *withdraw_, *giveIn_, *decide_, *addComment_, *removeComment_, *pick_, *return_;

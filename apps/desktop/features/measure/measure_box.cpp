@@ -3,7 +3,6 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QGridLayout>
 #include <QPainter>
 #include <QSignalBlocker>
@@ -19,7 +18,6 @@
 #include "desktop/widgets/press_words.h"
 #include "desktop/widgets/pulp_words.h"
 #include "desktop/widgets/theme.h"
-#include "handpiece/app/input/pointer_controller.h"
 
 namespace handpiece::desktop {
 
@@ -119,11 +117,11 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     auto* stopRow = new QHBoxLayout;
     stopOn_ = named(new QCheckBox(tr("Stop at a depth of"), this), "depthStopOn", tr("Depth stop"),
                     tr("The bur goes no deeper than this (Ctrl and the wheel)"));
-    stop_ = named(new QDoubleSpinBox(this), "depthStop", tr("Depth of the stop"));
-    stop_->setRange(0.1, kMaxStopMm);
+    stop_ = named(new DecimalField(this), "depthStop", tr("Depth of the stop"));
+    stop_->setRange(kLeastStopMm, kMaxStopMm);
     stop_->setSingleStep(0.1);
     stop_->setDecimals(1);
-    stop_->setValue(input::kFirstStopMm);
+    stop_->setValue(kFirstStopMm);
     stop_->setSuffix(tr(" mm"));
     stopOn_->setChecked(true);
     stopRow->addWidget(stopOn_, 1);
@@ -144,7 +142,7 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     column->addLayout(sectionRow);
     auto* offsetRow = new QHBoxLayout;
     offset_ = named(new QSlider(Qt::Horizontal, this), "sectionSlider", tr("Place of the section"));
-    offsetValue_ = named(new QDoubleSpinBox(this), "sectionOffset", tr("Place of the section in millimetres"));
+    offsetValue_ = named(new DecimalField(this), "sectionOffset", tr("Place of the section in millimetres"));
     offsetValue_->setDecimals(1);
     offsetValue_->setSingleStep(kOffsetStepMm);
     offsetValue_->setSuffix(tr(" mm"));
@@ -163,7 +161,7 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
         stop_->setEnabled(on);
         emit depthStopChanged(on ? stop_->value() : 0.0);
     });
-    connect(stop_, &QDoubleSpinBox::valueChanged, this, [this](double value) {
+    connect(stop_, &DecimalField::valueChanged, this, [this](double value) {
         if (stopOn_->isChecked()) emit depthStopChanged(value);
     });
     connect(sectionOn_, &QCheckBox::toggled, this, [this] { tellSection(); });
@@ -177,7 +175,7 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
         tellSection();
     };
     connect(offset_, &QSlider::valueChanged, this, [move](int value) { move(value * kOffsetStepMm); });
-    connect(offsetValue_, &QDoubleSpinBox::valueChanged, this, move);
+    connect(offsetValue_, &DecimalField::valueChanged, this, move);
 
     setSectionRange(-10, 10);
     setSection(false, Orientation::buccolingual, 0);
@@ -235,6 +233,11 @@ void MeasureBox::setDepthStop(double stopMm) {
     stopOn_->setChecked(stopMm > 0);
     stop_->setEnabled(stopMm > 0);
     if (stopMm > 0) stop_->setValue(stopMm);
+}
+
+void MeasureBox::keepDepthStop(bool isOn, double stopMm) {
+    setDepthStop(stopMm);
+    if (!isOn) setDepthStop(0.0);
 }
 
 std::optional<double> MeasureBox::depthStopMm() const {

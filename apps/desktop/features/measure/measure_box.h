@@ -7,13 +7,14 @@
 #include <optional>
 
 #include "desktop/widgets/detail.h"
+#include "desktop/widgets/number_field.h"
 #include "handpiece/app/exercise/permissions.h"
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/model/instrument/press.h"
 #include "handpiece/senses/measure/pulp_light.h"
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QPushButton;
 class QSlider;
@@ -31,7 +32,8 @@ class MeasureBox : public QWidget {
   public:
     enum class Orientation { buccolingual, mesiodistal, horizontal };
     Q_ENUM(Orientation)
-    static constexpr double kMinLoadN = 0.1, kMaxLoadN = 3.0, kMaxStopMm = 9.9;
+    static constexpr double kMinLoadN = 0.1, kMaxLoadN = 3.0, kLeastStopMm = 0.1, kMaxStopMm = 9.9,
+                            kFirstStopMm = input::kFirstStopMm;
 
     explicit MeasureBox(QWidget* parent = nullptr);
 
@@ -51,6 +53,8 @@ class MeasureBox : public QWidget {
     void setPressLimits(const instrument::PressLimits& limits);
     /// 0: off.
     void setDepthStop(double stopMm);
+    /// Off too it has a depth, which is there when it is switched on.
+    void keepDepthStop(bool isOn, double stopMm);
     void setSection(bool on, MeasureBox::Orientation orientation, double offsetMm);
     /// How far the section may move [mm].
     void setSectionRange(double leastMm, double mostMm);
@@ -81,11 +85,11 @@ class MeasureBox : public QWidget {
     QSlider* load_;
     PassRow* passRow_;
     QCheckBox* stopOn_;
-    QDoubleSpinBox* stop_;
+    DecimalField* stop_;
     QCheckBox* sectionOn_;
     QComboBox* orientation_;
     QSlider* offset_;
-    QDoubleSpinBox* offsetValue_;
+    DecimalField* offsetValue_;
     QLabel* locked_;
     Detail detail_ = Detail::practice;
     double loadN_ = 1.0, offsetMm_ = 0.0;

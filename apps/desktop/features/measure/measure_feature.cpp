@@ -11,6 +11,7 @@
 #include "desktop/features/measure/volume_bars.h"
 #include "desktop/picture/section_bar.h"
 #include "desktop/work/simulator.h"
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/instrument/turbine.h"
 
@@ -112,11 +113,33 @@ MeasureFeature::MeasureFeature(const FeatureContext& context)
 }
 
 void MeasureFeature::connectTools() {
+    // As they were in the hand last: after a restart, after a crash, in a window of another language.
+    box_->setLoad(
+        settings_.number(QStringLiteral("work/loadN"), box_->loadN(), MeasureBox::kMinLoadN, MeasureBox::kMaxLoadN));
+    if (settings_.value(QStringLiteral("work/depthStopOn")).isValid())
+        box_->keepDepthStop(settings_.value(QStringLiteral("work/depthStopOn")).toBool(),
+                            settings_.number(QStringLiteral("work/depthStopMm"), MeasureBox::kFirstStopMm,
+                                             MeasureBox::kLeastStopMm, MeasureBox::kMaxStopMm));
+    if (settings_.value(QStringLiteral("work/perPassMm")).isValid()) {
+        const double mm = settings_.number(QStringLiteral("work/perPassMm"), 0.0, 0.0, input::kMaxPerPassMm);
+        box_->passRow()->setDepth(mm > 0.0 ? std::optional(mm) : std::nullopt);
+    }
+    const auto keepStop = [this](double stopMm) {
+        // What an exercise withholds is off there, and as it was afterwards.
+        if (!simulator_.permissions().allows(Operation::depthStop)) return;
+        settings_.set(QStringLiteral("work/depthStopOn"), stopMm > 0.0);
+        if (stopMm > 0.0) settings_.set(QStringLiteral("work/depthStopMm"), stopMm);
+    };
+    const auto keepLoad = [this](double loadN) { settings_.set(QStringLiteral("work/loadN"), loadN); };
+    connect(&view_, &ViewWidget::loadChanged, this, keepLoad);
+    connect(box_, &MeasureBox::loadChanged, this, keepLoad);
+    connect(box_, &MeasureBox::depthStopChanged, this, keepStop);
     // The load and the depth stop: wheel in the picture, sliders in the box.
     connect(&view_, &ViewWidget::loadChanged, box_, &MeasureBox::setLoad);
     connect(box_, &MeasureBox::loadChanged, &view_, &ViewWidget::setLoad);
-    connect(&view_, &ViewWidget::stopChanged, this, [this](std::optional<double> depthMm) {
+    connect(&view_, &ViewWidget::stopChanged, this, [this, keepStop](std::optional<double> depthMm) {
         box_->setDepthStop(depthMm.value_or(0.0));
+        keepStop(depthMm.value_or(0.0));
         noteHand();
     });
     connect(box_, &MeasureBox::depthStopChanged, this, [this](double stopMm) {
@@ -128,6 +151,11 @@ void MeasureFeature::connectTools() {
         noteHand();
     });
     connect(box_->passRow(), &PassRow::changed, &view_, &ViewWidget::setPerPass);
+    const auto keepPass = [this](std::optional<double> depthMm) {
+        settings_.set(QStringLiteral("work/perPassMm"), depthMm.value_or(0.0));
+    };
+    connect(&view_, &ViewWidget::perPassChanged, this, keepPass);
+    connect(box_->passRow(), &PassRow::changed, this, keepPass);
     // The picture decides; the actions follow.
     for (const auto& [command, tool] : kTools)
         on(commands_[command], [this, t = tool](bool isOn) { view_.setTool(isOn ? t : Tool::drill); });
@@ -152,6 +180,7 @@ void MeasureFeature::connectTools() {
     });
 }
 
+/// The pointer's hand has one; an arm has none, whatever the panel says.
 void MeasureFeature::connectSection() {
     on(commands_[Command::section], [this](bool isOn) {
         if (!isOn && view_.tool() == Tool::section) view_.setTool(Tool::drill);

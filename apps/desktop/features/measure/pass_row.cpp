@@ -2,7 +2,6 @@
 #include "desktop/features/measure/pass_row.h"
 
 #include <QCheckBox>
-#include <QDoubleSpinBox>
 #include <QHBoxLayout>
 #include <QSignalBlocker>
 
@@ -16,12 +15,11 @@ PassRow::PassRow(QWidget* parent) : QWidget(parent) {
     row->setContentsMargins(0, 0, 0, 0);
     on_ = named(new QCheckBox(tr("One pass goes"), this), "perPassOn", tr("Depth of one pass"),
                 tr("How deep one stroke cuts: press again to go deeper (Ctrl, Shift and the wheel)"));
-    depth_ = named(new QDoubleSpinBox(this), "perPass", tr("Depth of one pass in millimetres"));
+    depth_ = named(new DecimalField(this), "perPass", tr("Depth of one pass in millimetres"));
     depth_->setRange(input::kMinPerPassMm, input::kMaxPerPassMm);
     depth_->setSingleStep(0.1);
     depth_->setDecimals(1);
     depth_->setSuffix(tr(" mm"));
-    depth_->setKeyboardTracking(false);
     depth_->setValue(input::kFirstPerPassMm);
     on_->setChecked(true);
     row->addWidget(on_, 1);
@@ -30,7 +28,7 @@ PassRow::PassRow(QWidget* parent) : QWidget(parent) {
         depth_->setEnabled(on);
         emit changed(depthMm());
     });
-    connect(depth_, &QDoubleSpinBox::valueChanged, this, [this] { emit changed(depthMm()); });
+    connect(depth_, &DecimalField::valueChanged, this, [this] { emit changed(depthMm()); });
 }
 
 std::optional<double> PassRow::depthMm() const {

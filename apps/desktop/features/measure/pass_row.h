@@ -6,8 +6,9 @@
 #include <QWidget>
 #include <optional>
 
+#include "desktop/widgets/number_field.h"
+
 class QCheckBox;
-class QDoubleSpinBox;
 
 namespace handpiece::desktop {
 
@@ -24,7 +25,7 @@ class PassRow : public QWidget {
 
   private:
     QCheckBox* on_;
-    QDoubleSpinBox* depth_;
+    DecimalField* depth_;
 };
 
 }  // namespace handpiece::desktop

@@ -10,6 +10,7 @@
 #include <QVBoxLayout>
 
 #include "desktop/features/measure/plot_view.h"
+#include "desktop/framework/mnemonics.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
 
@@ -31,7 +32,7 @@ PlotPanel::PlotPanel(QWidget* parent) : QWidget(parent) {
     pause_->setCheckable(true);
     save_ = iconButton("save", "plotSave", tr("Save the plots"), this);
     save_->setPopupMode(QToolButton::InstantPopup);
-    auto* menu = new QMenu(save_);
+    auto* menu = withMnemonics(new QMenu(save_));
     menu->setObjectName("plotSaveMenu");
     const auto add = [&](const QString& text, const char* format) {
         auto* action = menu->addAction(text, this, [this, format] { emit saveRequested(QString::fromLatin1(format)); });

@@ -2,7 +2,6 @@
 #include "desktop/features/scan/choose_page.h"
 
 #include <QCheckBox>
-#include <QDoubleSpinBox>
 #include <QDragEnterEvent>
 #include <QFileInfo>
 #include <QFormLayout>
@@ -132,15 +131,14 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     inSpacing->addWidget(spacingWhy_);
     auto* form = new QFormLayout;
     const auto spin = [this](const char* name, const QString& accessible) {
-        auto* box = named(new QDoubleSpinBox(spacingBox_), name, accessible);
+        auto* box = named(new DecimalField(spacingBox_), name, accessible);
         box->setDecimals(4);
         box->setRange(0.0, 5.0);
         box->setSingleStep(0.01);
         box->setSuffix(tr(" mm"));
         box->setSpecialValueText(tr("not said yet"));
-        box->setKeyboardTracking(false);
         box->setMaximumWidth(160);
-        connect(box, &QDoubleSpinBox::valueChanged, this, [this] { takeSpacing(); });
+        connect(box, &DecimalField::valueChanged, this, [this] { takeSpacing(); });
         return box;
     };
     within_ = spin("scanSpacingWithin", tr("Between pixels of a slice"));

@@ -6,9 +6,9 @@
 #include <functional>
 
 #include "desktop/features/scan/page.h"
+#include "desktop/widgets/number_field.h"
 
 class QCheckBox;
-class QDoubleSpinBox;
 class QFrame;
 class QLabel;
 class QListWidget;
@@ -51,7 +51,7 @@ class ChoosePage : public ScanPage {
     QFrame *drop_, *details_, *spacingBox_;
     QLabel *dropText_, *source_, *picture_, *what_, *notes_, *spacingWhy_, *molar_, *way_;
     QListWidget* list_;
-    QDoubleSpinBox *within_, *between_;
+    DecimalField *within_, *between_;
     QPushButton* estimate_;
     QCheckBox* labels_;
     bool showing_ = false;

@@ -3,13 +3,11 @@
 
 #include <QCheckBox>
 #include <QComboBox>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QLabel>
 #include <QLocale>
 #include <QPushButton>
 #include <QScrollArea>
-#include <QSpinBox>
 #include <QVBoxLayout>
 
 #include "desktop/features/scan/tissue_colours.h"
@@ -58,22 +56,20 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     resolution_->addItem(tr("Five cases: 6, 12, 25, 50, 100 %"));
     resolution_->addItem(tr("A number of faces"));
     form->addRow(tr("Faces"), resolution_);
-    faces_ = named(new QSpinBox(left), "scanFaces", tr("Number of faces"), tr("Of all surfaces together"));
+    faces_ = named(new WholeField(left), "scanFaces", tr("Number of faces"), tr("Of all surfaces together"));
     faces_->setRange(1000, 5'000'000);
     faces_->setSingleStep(10000);
     faces_->setGroupSeparatorShown(true);
     faces_->setValue(68151);
-    faces_->setKeyboardTracking(false);
     form->addRow(tr("Number of faces"), faces_);
     spacing_ =
-        named(new QDoubleSpinBox(left), "scanGrid", tr("Grid of the tissues"),
+        named(new DecimalField(left), "scanGrid", tr("Grid of the tissues"),
               tr("How close the points lie at which the tissues are told; finer than the scan shows nothing more"));
     spacing_->setDecimals(3);
     spacing_->setRange(0.0, 0.5);
     spacing_->setSingleStep(0.01);
     spacing_->setSuffix(tr(" mm"));
     spacing_->setSpecialValueText(tr("as the scan"));
-    spacing_->setKeyboardTracking(false);
     form->addRow(tr("Grid of the tissues"), spacing_);
     column->addLayout(form);
     smooth_ = named(new QCheckBox(tr("Smooth (volumes are kept)"), left), "scanSmooth", tr("Smooth"),
@@ -102,12 +98,11 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     mouth_->setWordWrap(true);
     column->addWidget(mouth_);
     auto* mouthForm = new QFormLayout;
-    reach_ = named(new QDoubleSpinBox(left), "scanReach", tr("Taken where they agree within"));
+    reach_ = named(new DecimalField(left), "scanReach", tr("Taken where they agree within"));
     reach_->setDecimals(2);
     reach_->setRange(0.05, 2.0);
     reach_->setSingleStep(0.05);
     reach_->setSuffix(tr(" mm"));
-    reach_->setKeyboardTracking(false);
     mouthForm->addRow(tr("Taken where they agree within"), reach_);
     column->addLayout(mouthForm);
     registered_ = note({}, left, "scanRegistered");
@@ -139,7 +134,7 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
                 job.percents = {at < allFive ? kPercents[at - hundred] : 100.0};
         });
     });
-    connect(faces_, &QSpinBox::valueChanged, this, [this](int faces) {
+    connect(faces_, &WholeField::valueChanged, this, [this](int faces) {
         if (!showing_)
             decide([&](scan_case::ScanJob& job) { job.faces = static_cast<std::size_t>(faces); },
                    QStringLiteral("faces"));
@@ -150,11 +145,11 @@ SurfacePage::SurfacePage(ScanModel& model, ScanQuestions& questions, QWidget* pa
     connect(scenery_, &QCheckBox::toggled, this, [this](bool on) {
         if (!showing_) decide([on](scan_case::ScanJob& job) { job.scenery = on; });
     });
-    connect(spacing_, &QDoubleSpinBox::valueChanged, this, [this](double mm) {
+    connect(spacing_, &DecimalField::valueChanged, this, [this](double mm) {
         if (!showing_)
             decide([mm](scan_case::ScanJob& job) { job.segmentation.spacingMm = mm; }, QStringLiteral("grid"));
     });
-    connect(reach_, &QDoubleSpinBox::valueChanged, this, [this](double mm) {
+    connect(reach_, &DecimalField::valueChanged, this, [this](double mm) {
         if (!showing_) decide([mm](scan_case::ScanJob& job) { job.intraoralReachMm = mm; }, QStringLiteral("reach"));
     });
     connect(browse, &QPushButton::clicked, this, [this] {

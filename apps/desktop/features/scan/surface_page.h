@@ -5,13 +5,12 @@
 
 #include "desktop/features/scan/choose_page.h"
 #include "desktop/features/scan/page.h"
+#include "desktop/widgets/number_field.h"
 
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QPushButton;
-class QSpinBox;
 
 namespace handpiece::desktop {
 
@@ -31,9 +30,9 @@ class SurfacePage : public ScanPage {
 
     ScanQuestions& questions_;
     QComboBox* resolution_;
-    QSpinBox* faces_;
+    WholeField* faces_;
     QCheckBox *smooth_, *scenery_;
-    QDoubleSpinBox *spacing_, *reach_;
+    DecimalField *spacing_, *reach_;
     QLabel *mouth_, *registered_, *figures_;
     QPushButton* mouthRemove_;
     SolidView* solid_;

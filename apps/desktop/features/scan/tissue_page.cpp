@@ -5,7 +5,6 @@
 #include <QCheckBox>
 #include <QComboBox>
 #include <QCoreApplication>
-#include <QDoubleSpinBox>
 #include <QFormLayout>
 #include <QGridLayout>
 #include <QLabel>
@@ -233,23 +232,23 @@ QWidget* TissuePage::makeTools() {
                                       tissue == cases::Tissue::none ? tr("Nothing here") : tissueName(tissue),
                                       static_cast<int>(tissue));
             form->addRow(tr("This is"), brushTissue_);
-            brushRadius_ = named(new QDoubleSpinBox(page), "scanBrushRadius", tr("Radius of the brush"));
+            brushRadius_ = named(new DecimalField(page), "scanBrushRadius", tr("Radius of the brush"));
             form->addRow(tr("Radius"), brushRadius_);
             connect(brushTissue_, &QComboBox::currentIndexChanged, this, [this] { takeTool(); });
         }
         if (t.tool == SliceTool::lesion) {
-            lesionRadius_ = named(new QDoubleSpinBox(page), "scanLesionRadius", tr("Radius of the lesion"));
+            lesionRadius_ = named(new DecimalField(page), "scanLesionRadius", tr("Radius of the lesion"));
             form->addRow(tr("Radius"), lesionRadius_);
         }
         options_->addWidget(page);
     }
-    for (QDoubleSpinBox* box : {brushRadius_, lesionRadius_}) {
+    for (DecimalField* box : {brushRadius_, lesionRadius_}) {
         box->setRange(0.05, 5.0);
         box->setDecimals(2);
         box->setSingleStep(0.1);
         box->setSuffix(tr(" mm"));
         box->setValue(box == brushRadius_ ? 0.4 : 1.0);
-        connect(box, &QDoubleSpinBox::valueChanged, this, [this] { takeTool(); });
+        connect(box, &DecimalField::valueChanged, this, [this] { takeTool(); });
     }
     options_->setSizePolicy(QSizePolicy::Preferred, QSizePolicy::Fixed);
     column->addWidget(options_);

@@ -5,11 +5,11 @@
 
 #include "desktop/features/scan/page.h"
 #include "desktop/features/scan/slice_view.h"
+#include "desktop/widgets/number_field.h"
 
 class QButtonGroup;
 class QCheckBox;
 class QComboBox;
-class QDoubleSpinBox;
 class QLabel;
 class QListWidget;
 class QPushButton;
@@ -58,7 +58,7 @@ class TissuePage : public ScanPage {
     QButtonGroup* tools_;
     QStackedWidget* options_;
     QComboBox* brushTissue_;
-    QDoubleSpinBox *brushRadius_, *lesionRadius_;
+    DecimalField *brushRadius_, *lesionRadius_;
     QListWidget* decisions_;
     QPushButton *remove_, *flip_, *automatic_;
     QCheckBox *damp_, *caries_, *fill_;

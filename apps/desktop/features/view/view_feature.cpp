@@ -8,10 +8,13 @@
 #include <QToolBar>
 #include <QToolButton>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
 
 #include "desktop/features/view/guide_dialog.h"
 #include "desktop/features/view/view_bar.h"
+#include "desktop/framework/mnemonics.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/work/simulator.h"
@@ -22,7 +25,7 @@ namespace {
 
 using exercise::Operation;
 
-constexpr int kEyeMs = 700;
+constexpr int kEyeMs = 700, kTurnMs = 1000;
 
 using Command = ViewFeature::Command;
 constexpr CommandOf<Command> kCommands[] = {
@@ -79,6 +82,9 @@ QString eyeKey(const std::filesystem::path& file) {
     const QByteArray hash = QCryptographicHash::hash(QByteArray::fromStdString(file.string()), QCryptographicHash::Md5);
     return QStringLiteral("eyes/%1").arg(QLatin1String(hash.toHex().left(16)));
 }
+QString turnKey(const std::filesystem::path& file) {
+    return eyeKey(file) + QStringLiteral("Turn");
+}
 }  // namespace
 
 ViewFeature::ViewFeature(const FeatureContext& context)
@@ -127,7 +133,7 @@ ViewFeature::ViewFeature(const FeatureContext& context)
 }
 
 void ViewFeature::addViewsButton() {
-    auto* views = new QMenu(tr("Views"), &window_);
+    auto* views = withMnemonics(new QMenu(tr("Views"), &window_));
     views->setObjectName(QStringLiteral("viewsMenu"));
     for (const auto& [command, standard] : kViews)
         views->addAction(commands_[command]);
@@ -154,6 +160,7 @@ void ViewFeature::connectEye() {
         eyeTimer_.start(kEyeMs);
     });
     eyeTimer_.setSingleShot(true);
+    turnTimer_.setSingleShot(true);
     connect(&eyeTimer_, &QTimer::timeout, this, &ViewFeature::rememberEye);
     connect(&window_, &MainWindow::aboutToRemember, this, &ViewFeature::rememberEye);
 }
@@ -166,7 +173,10 @@ void ViewFeature::showDocument() {
     }
     const cases::Case& toothCase = *simulator_.toothCase();
     view_.setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
-    view_.setPointer(simulator_.mailbox(), simulator_.startPose());
+    const core::Pose held = heldPose();
+    view_.setPointer(simulator_.mailbox(), held);
+    // As it begins it is not noted: over what a crash has left to be brought back.
+    keptTurn_ = held.orientation;
     if (simulator_.bur()) view_.setBur(simulator_.bur());
     view_.setPermissions(simulator_.permissions());
     bar_->setPermissions(simulator_.permissions());
@@ -223,6 +233,35 @@ void ViewFeature::rememberEye() {
     const view::Camera& eye = view_.camera();
     settings_.set(eyeKey(simulator_.document().caseFile),
                   QStringList{text(eye.eyeMm), text(eye.targetMm), text(eye.up)});
+}
+
+/// Of the student's own hand, once a second at most and only when it is another.
+void ViewFeature::showTick() {
+    constexpr double kOtherRad = 0.01;
+    if (simulator_.mode() != Simulator::Mode::liveSession || view_.hand() == nullptr || turnTimer_.isActive()) return;
+    const core::Quat turn = view_.hand()->tilt();
+    if (keptTurn_.angularDistance(turn) < kOtherRad) return;
+    keptTurn_ = turn;
+    turnTimer_.start(kTurnMs);
+    settings_.set(turnKey(simulator_.document().caseFile),
+                  QStringLiteral("%1 %2 %3 %4").arg(turn.w()).arg(turn.x()).arg(turn.y()).arg(turn.z()));
+}
+
+/// Where the hand begins; turned as it was where work goes on: after a crash, in a window of another language.
+core::Pose ViewFeature::heldPose() const {
+    core::Pose pose = simulator_.startPose();
+    const messages::HapticSample& sample = simulator_.sample();
+    const double removedMm3 =
+        std::accumulate(sample.removedMm3.begin(), sample.removedMm3.end(), sample.removedOthersMm3);
+    if (sample.tick == 0 && removedMm3 <= 0.0) return pose;
+    const QStringList kept =
+        settings_.value(turnKey(simulator_.document().caseFile)).toString().split(QLatin1Char(' '));
+    std::array<double, 4> turn{};
+    for (std::size_t k = 0; k < turn.size() && kept.size() == 4; ++k)
+        turn[k] = kept[static_cast<qsizetype>(k)].toDouble();
+    const core::Quat held(turn[0], turn[1], turn[2], turn[3]);
+    if (std::abs(held.norm() - 1.0) < 1e-3) pose.orientation = held.normalized();
+    return pose;
 }
 
 void ViewFeature::recallEye() {

@@ -31,6 +31,7 @@ class ViewFeature : public Feature {
     };
     explicit ViewFeature(const FeatureContext& context);
     void showDocument() override;
+    void showTick() override;
 
   private:
     void addViewsButton();
@@ -39,10 +40,12 @@ class ViewFeature : public Feature {
     void keepLook(const view::Look& look);
     void rememberEye();
     void recallEye();
+    [[nodiscard]] core::Pose heldPose() const;
 
     CommandSet<Command> commands_;
     ViewBar* bar_;
-    QTimer eyeTimer_;
+    QTimer eyeTimer_, turnTimer_;
+    core::Quat keptTurn_ = core::Quat::Identity();
     bool hasPicture_ = false;
 };
 

@@ -653,6 +653,9 @@ bool PointerController::isOnItsWay() const noexcept {
 bool PointerController::isAway() const noexcept {
     return state_->away;
 }
+Quat PointerController::tilt() const noexcept {
+    return state_->own;
+}
 std::optional<Vec3> PointerController::rest() const noexcept {
     return state_->restMm;
 }

@@ -116,6 +116,8 @@ class PointerController {
     [[nodiscard]] bool isPressed() const noexcept;
     [[nodiscard]] bool pedalLatched() const noexcept;
     [[nodiscard]] std::optional<core::Vec3> rest() const noexcept;
+    /// The student's own, near which the handpiece is held.
+    [[nodiscard]] core::Quat tilt() const noexcept;
     [[nodiscard]] bool isAway() const noexcept;
     /// Out of a cavity, or over something: follow() leads it on.
     [[nodiscard]] bool isOnItsWay() const noexcept;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/senses/view/occlusal.h"
 
 namespace handpiece::view {
 
@@ -119,7 +120,7 @@ Camera standardView(StandardView view, const core::Box& bounds, int buccalSign, 
     Vec3 from = Vec3::UnitZ(), up = Vec3::UnitZ();
     switch (view) {
         case StandardView::occlusal:
-            up = {0.0, buccal, 0.0};
+            up = occlusalUp(buccalSign);
             break;
         case StandardView::buccal:
             from = {0.0, buccal, 0.0};

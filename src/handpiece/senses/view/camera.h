@@ -54,8 +54,8 @@ struct Ray {
                             const std::optional<core::Vec3>& pointMm = {});
 
 /// The standard dental views, from that side. The crown points up in all but the occlusal one, which looks down on it
-/// (along -z) with buccal at the top of the picture, as occlusal photographs are shown; mesial is then on the right for
-/// buccal +y and on the left for buccal -y. Oblique: from buccal, mesial and above.
+/// (along -z) with lingual at the top of the picture (occlusal.h says why); mesial is then on the left for
+/// buccal +y and on the right for buccal -y. Oblique: from buccal, mesial and above.
 enum class StandardView { occlusal, buccal, lingual, mesial, distal, oblique };
 /// In the order of the keys 1 to 6, with their names as typed ("occlusal").
 [[nodiscard]] const std::vector<std::pair<StandardView, std::string_view>>& standardViews();

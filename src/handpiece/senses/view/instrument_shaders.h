@@ -23,8 +23,13 @@ inline constexpr const char* kInstrumentFragment = R"(
 in vec3 at, normalOut, local;
 uniform vec3 eye, lamp, eyeUp, eyeRight;
 #ifdef GLASS
+uniform float goneMm, wholeMm;
+#ifdef BUR
 uniform vec3 tip, toEye;  // the bur's, and from there
-uniform float eyeMm, goneMm, wholeMm, siteMm, glassFrom, glassOver;
+uniform float eyeMm, siteMm, glassFrom, glassOver;
+#else
+uniform float share[32], shareFrom, shareStep;  // of the handpiece, along its handle
+#endif
 #endif
 #ifdef BUR
 uniform mat4 burInTooth;
@@ -107,15 +112,15 @@ void main() {
     vec3 root = sqrt(c);
     c = 0.9549 * root + 0.0956 * sqrt(root) - 0.0511 * c;
 #ifdef GLASS
-    // What lies over the place that is worked at fades away, the more the higher it lies; also what is so near to
-    // the eye that it would fill the picture.
+    // What is so near to the eye that it would fill the picture fades away.
+    float there = smoothstep(goneMm, wholeMm, 1.0 / gl_FragCoord.w);
+#ifdef BUR
+    // What lies over the place that is worked at too, the more the higher it lies.
     vec3 w = at - tip;
     float high = dot(w, toEye);
     float away = length(w - high * toEye) * eyeMm / max(0.05 * eyeMm, eyeMm - high);
     float site = siteMm * clamp((high - glassFrom) / glassOver, 0.0, 1.0) + 0.01;
     float solid = smoothstep(0.6 * site, site, away);
-    float there = smoothstep(goneMm, wholeMm, 1.0 / gl_FragCoord.w);
-#ifdef BUR
     // Of the bur an outline stays: where it stands is to be seen.
     vec3 glass = mix(vec3(0.80, 0.90, 0.97), c, 0.35);
     float share = 1.0 / (gl_FragCoord.w * eyeMm);  // what is near to the eye is large: its edges are drawn faintly
@@ -126,6 +131,9 @@ void main() {
     colour = there * vec4(mix(glass, c, solid) * veil, veil);
 #else
     // Of the handpiece nothing: its rims would lie over the work like a bell jar.
+    float slice = clamp((local.x - shareFrom) / shareStep - 0.5, 0.0, 30.999);
+    int first = int(slice);
+    float solid = mix(share[first], share[first + 1], slice - float(first));
     colour = there * solid * vec4(c, 1.0);
     // What is not seen hides nothing either: depth is written.
     if (colour.a < 0.01) discard;

@@ -150,6 +150,12 @@ BurFinish finishOf(const instrument::Bur& bur, std::string_view cuttingParameter
 
 void Instruments::setTurbine(const geometry::TriangleMesh& mesh) {
     set(turbine_, mesh, 0.6, kTurbineCellMm);
+    fade_.set(mesh);
+}
+
+void Instruments::setWork(const core::Box& tooth) {
+    ++appearance_;
+    crown_ = crownOf(tooth);
 }
 
 namespace {
@@ -225,39 +231,54 @@ bool Instruments::Sight::isGone(const PooledMesh& mesh) const {
     return depthOf(mesh) + mesh.radiusMm <= goneMm;
 }
 
+bool Instruments::Sight::isNear(const PooledMesh& mesh) const {
+    return depthOf(mesh) - mesh.radiusMm < wholeMm;
+}
+
 bool Instruments::Sight::isGlass(const PooledMesh& mesh) const {
     // As the shader has it, for the whole ball around the piece.
     const float r = mesh.radiusMm, high = mesh.centreMm.dot(toEye);
-    if (depthOf(mesh) - r < wholeMm) return true;
+    if (isNear(mesh)) return true;
     const float site = siteMm * std::clamp((high + r - fromMm) / kGlassOverMm, 0.0f, 1.0f) + 0.01f;
     const float away = std::max(0.0f, (mesh.centreMm - high * toEye).norm() - r);
     return away * eyeMm < site * std::max(0.05f * eyeMm, eyeMm - high + r);
 }
 
 template <class Found>
-void Instruments::eachSeen(const Culler& culler, const Sight& sight, const Look& look, const Found& found) const {
+void Instruments::eachSeen(const Culler& culler, const Sight& sight, const HandpieceFade::Solid& solid,
+                           const Look& look, const Found& found) const {
+    constexpr float kWhole = 0.999f, kNone = 0.01f;
     // The end of the shank is seen only where the head is glass, or not there.
     bool endSeen = !look.turbine || turbine_.meshes.empty();
     if (look.turbine)
         for (const PooledMesh& mesh : turbine_.meshes)
             if (culler.mayBeSeen(mesh) && !sight.isGone(mesh)) {
-                endSeen = endSeen || sight.isGlass(mesh);
-                found(mesh, true);
+                const auto [least, most] = solid.between(mesh.minMm.x(), mesh.maxMm.x());
+                const bool isGlass = least < kWhole || sight.isNear(mesh);
+                endSeen = endSeen || isGlass;
+                if (most > kNone) found(mesh, true, isGlass);
             }
     if (!look.bur) return;
-    for (const Solid* solid : {&bur_, &shankEnd_}) {
-        if (solid == &shankEnd_ && !endSeen) break;
-        for (const PooledMesh& mesh : solid->meshes)
-            if (culler.mayBeSeen(mesh) && !sight.isGone(mesh)) found(mesh, false);
+    for (const Solid* one : {&bur_, &shankEnd_}) {
+        if (one == &shankEnd_ && !endSeen) break;
+        for (const PooledMesh& mesh : one->meshes)
+            if (culler.mayBeSeen(mesh) && !sight.isGone(mesh)) found(mesh, false, sight.isGlass(mesh));
     }
+}
+
+HandpieceFade::Solid Instruments::solidOf(const Eye& eyeInBur, const Moment& moment) const {
+    const core::Vec3 crown = moment.burInTooth.applyInverse(crown_.centreMm.cast<double>());
+    return fade_.seenFrom(eyeInBur.positionMm, crown.cast<float>(), crown_.radiusMm, static_cast<float>(headLengthMm_));
 }
 
 PixelRect Instruments::rect(const Eye& eye, const Viewport& viewport, const Look& look, const Moment& moment) const {
     PixelRect rect;
     if (!moment.burShown) return rect;
     const Eye in = inBurOf(eye, moment.burInTooth);
-    eachSeen(Culler(in, viewport, {0, 0, viewport.width, viewport.height}, true), Sight(in, headLengthMm_), look,
-             [&](const PooledMesh& mesh, bool) { rect = rect.joined(rectOf(mesh.minMm, mesh.maxMm, in, viewport)); });
+    eachSeen(Culler(in, viewport, {0, 0, viewport.width, viewport.height}, true), Sight(in, headLengthMm_),
+             solidOf(in, moment), look, [&](const PooledMesh& mesh, bool, bool) {
+                 rect = rect.joined(rectOf(mesh.minMm, mesh.maxMm, in, viewport));
+             });
     return rect;
 }
 
@@ -369,12 +390,14 @@ std::size_t Instruments::draw(Shaders& shaders, const Eye& eye, const Viewport& 
     if (!moment.burShown) return 0;
     const Eye inBur = inBurOf(eye, moment.burInTooth);
     const Sight sight(inBur, headLengthMm_);
+    const HandpieceFade::Solid solid = solidOf(inBur, moment);
     for (auto* meshes : {&metalBur_, &metalTurbine_, &glassBur_, &glassTurbine_})
         meshes->clear();
-    eachSeen(Culler(inBur, viewport, rect, true), sight, look, [&](const PooledMesh& mesh, bool isTurbine) {
-        const bool isGlass = sight.isGlass(mesh);
-        (isTurbine ? (isGlass ? glassTurbine_ : metalTurbine_) : (isGlass ? glassBur_ : metalBur_)).push_back(&mesh);
-    });
+    eachSeen(Culler(inBur, viewport, rect, true), sight, solid, look,
+             [&](const PooledMesh& mesh, bool isTurbine, bool isGlass) {
+                 (isTurbine ? (isGlass ? glassTurbine_ : metalTurbine_) : (isGlass ? glassBur_ : metalBur_))
+                     .push_back(&mesh);
+             });
     glEnable(GL_CULL_FACE);
     glCullFace(GL_BACK);
     glFrontFace(eye.mirrored ? GL_CCW : GL_CW);
@@ -401,14 +424,22 @@ std::size_t Instruments::draw(Shaders& shaders, const Eye& eye, const Viewport& 
             prepare(program, eye, moment, lighting);
             if (isBur) prepareBur(program, moment);
             const Vec3f tip = moment.burInTooth.positionMm.cast<float>();
-            program.set("tip", tip);
-            program.set("toEye", Vec3f((eye.positionMm - tip) / sight.eyeMm));
-            program.set("eyeMm", sight.eyeMm);
+            if (isBur) {
+                program.set("tip", tip);
+                program.set("toEye", Vec3f((eye.positionMm - tip) / sight.eyeMm));
+                program.set("eyeMm", sight.eyeMm);
+            }
             program.set("goneMm", sight.goneMm);
             program.set("wholeMm", sight.wholeMm);
-            program.set("siteMm", sight.siteMm);
-            program.set("glassFrom", sight.fromMm);
-            program.set("glassOver", kGlassOverMm);
+            if (isBur) {
+                program.set("siteMm", sight.siteMm);
+                program.set("glassFrom", sight.fromMm);
+                program.set("glassOver", kGlassOverMm);
+            } else {
+                program.set("share", solid.share.data(), HandpieceFade::kSlices);
+                program.set("shareFrom", solid.fromMm);
+                program.set("shareStep", solid.stepMm);
+            }
             triangles += pool_.draw(meshes);
         };
         drawGlass(shaders.glassBur, glassBur_, true);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/senses/view/handpiece_fade.h"
 #include "handpiece/senses/view/mesh_pool.h"
 #include "handpiece/senses/view/renderer.h"
 #include "handpiece/senses/view/shaders.h"
@@ -18,6 +19,8 @@ class Instruments {
   public:
     void setBur(const geometry::TriangleMesh& mesh, double headLengthMm, double headRadiusMm, BurFinish finish);
     void setTurbine(const geometry::TriangleMesh& mesh);
+    /// What is worked at: the handpiece never lies over its crown.
+    void setWork(const core::Box& tooth);
     [[nodiscard]] double headRadiusMm() const noexcept { return headRadiusMm_; }
 
     /// Pixels that shadow and draw() may change.
@@ -39,8 +42,9 @@ class Instruments {
     /// Where the bur's tip is seen from, in the bur's frame. What lies over it would hide the work.
     struct Sight {
         Sight(const Eye& eyeInBur, double headLengthMm);
-        /// Whether any of it is to be seen through; whether it is so near to the eye that none is shown.
+        /// Whether any of the bur is to be seen through; whether a thing is so near to the eye that none is shown.
         [[nodiscard]] bool isGlass(const PooledMesh& mesh) const;
+        [[nodiscard]] bool isNear(const PooledMesh& mesh) const;
         [[nodiscard]] bool isGone(const PooledMesh& mesh) const;
         [[nodiscard]] float depthOf(const PooledMesh& mesh) const;
         gl::Vec3f eye, toEye;
@@ -54,7 +58,9 @@ class Instruments {
     void set(Solid& solid, const geometry::TriangleMesh& mesh, double creaseRad, double cellMm);
     /// Calls `found(mesh, isTurbine)` for what may be seen.
     template <class Found>
-    void eachSeen(const Culler& culler, const Sight& sight, const Look& look, const Found& found) const;
+    void eachSeen(const Culler& culler, const Sight& sight, const HandpieceFade::Solid& solid, const Look& look,
+                  const Found& found) const;
+    [[nodiscard]] HandpieceFade::Solid solidOf(const Eye& eyeInBur, const Moment& moment) const;
 
     void prepareBur(gl::Program& program, const Moment& moment) const;
 
@@ -68,6 +74,8 @@ class Instruments {
     std::uint64_t appearance_ = 1;
     MeshPool pool_;
     Solid bur_, shankEnd_, turbine_;
+    HandpieceFade fade_;
+    CrownBall crown_;
     std::vector<const PooledMesh*> metalBur_, metalTurbine_, glassBur_, glassTurbine_;
     BurFinish finish_ = BurFinish::diamond;
     double headLengthMm_ = 1.0, headRadiusMm_ = 0.5, shankRadiusMm_ = 0.8, topMm_ = 9.0;

@@ -439,6 +439,7 @@ bool Renderer::isSoftware() const noexcept {
 void Renderer::setTooth(const core::Box& bounds) {
     state_->context.makeCurrent();
     state_->scene.setTooth(bounds);
+    state_->instruments.setWork(bounds);
     state_->glass.set({});
 }
 
@@ -450,6 +451,7 @@ void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool b
 void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
     state_->context.makeCurrent();
     state_->scene.setMesh(mesh, tissue);
+    state_->instruments.setWork(mesh.bounds());
     state_->glass.set({});
 }
 

@@ -58,7 +58,7 @@ std::vector<Vec3> pointsOf(const Bur& bur) {
     std::vector<Vec3> points;
     const instrument::SurfaceRing* last = nullptr;
     for (const instrument::SurfaceRing& ring : bur.rings()) {
-        if (last && std::hypot(ring.zMm - last->zMm, ring.rhoMm - last->rhoMm) < kPointsApartMm && ring.rhoMm > 0.0 &&
+        if (last && core::hypot(ring.zMm - last->zMm, ring.rhoMm - last->rhoMm) < kPointsApartMm && ring.rhoMm > 0.0 &&
             &ring != &bur.rings().back())
             continue;
         last = &ring;

@@ -39,7 +39,7 @@ class ToothMirror {
     std::shared_ptr<const ToothModel> model_;
     std::uint16_t tooth_;
     std::vector<std::unique_ptr<std::array<float, field::kBrickValues>>> bricks_;  ///< by dense brick; null: uncut
-    std::vector<std::uint32_t> touched_, unfollowed_;  ///< by takeTouched(), by follow()
+    std::vector<std::uint32_t> touched_, unfollowed_;                              ///< by takeTouched(), by follow()
     std::vector<bool> isTouched_, isUnfollowed_;
 };
 

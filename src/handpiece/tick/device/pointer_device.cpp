@@ -32,6 +32,7 @@ constexpr double kMaxShare = 0.8;  // of an error, in one tick
 // What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
 // The load falls to none on the last of the way, some hundredths of a millimetre, or a stroke would end far above it.
 constexpr double kEndStiffer = 4.0;
+constexpr double kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
 constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
 constexpr double kOverLoad = 0.05;               // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
@@ -116,6 +117,7 @@ struct PointerDevice::State {
 
     void turn(double periodS) noexcept;
     void begin(bool pressing) noexcept;
+    [[nodiscard]] double travelMmS() const noexcept;
     void follow(const Vec3& place, bool still, double h) noexcept;
     void move(double h) noexcept;
     void press(const Vec3& wasWantedMm, double periodS) noexcept;
@@ -227,6 +229,13 @@ void PointerDevice::State::turn(double periodS) noexcept {
     orientation = core::interpolated(orientation, share, wish.orientation).normalized();
 }
 
+/// A light hand is a slow one: what it might meet on its way, beside what was looked at, stops it at little more than
+/// its load.
+double PointerDevice::State::travelMmS() const noexcept {
+    if (!(wish.mostN > 0.0) || wish.regrips) return settings.travelMmS;
+    return std::min(settings.travelMmS, kTravelMmSPerN * wish.mostN);
+}
+
 void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexcept {
     // Critically damped; an error that is held to twice the travel's share ends in that speed, without overshoot.
     const double w = 2.0 / settings.followS;
@@ -236,7 +245,7 @@ void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexc
         const double across = std::clamp(1.0 - deeper / kOutFirstMm, 0.0, 1.0);
         error = across * error - (1.0 - across) * deeper * wish.way;
     }
-    error = heldTo(error, 2.0 * settings.travelMmS / w);
+    error = heldTo(error, 2.0 * travelMmS() / w);
     const Vec3 before = wantedMmS;
     wantedMmS = (wantedMmS + h * w * w * error) / (1.0 + h * 2.0 * w + h * h * w * w);
     wantedMm += h * wantedMmS;
@@ -258,7 +267,11 @@ void PointerDevice::State::move(double h) noexcept {
     // The hand's spring and damper act at the end of the step: stable whatever their size. What speeds the mass up with
     // what the hand wants is the hand's own: in free air it follows without delay.
     const Vec3 pullN = mass * wantedMmS2 + b * wantedMmS + k * (wantedMm - positionMm);
-    velocityMmS = (h / (mass + h * b + h * h * k)) * (mass / h * velocityMmS + pullN + forceN);
+    // What meets something has no way to go on: a person's hand stops, it does not swing.
+    const bool meets = wish.mostN > 0.0 && forceN.squaredNorm() > 0.0;
+    const Vec3 going = meets ? heldTo(velocityMmS, kMetMmSPerN * wish.mostN) : velocityMmS;
+    velocityMmS =
+        (h / (mass + h * b + h * h * k)) * (mass / h * going + (meets ? heldTo(pullN, wish.mostN) : pullN) + forceN);
     positionMm += h * velocityMmS;
 }
 

@@ -373,6 +373,8 @@ TEST_F(ViewTest, TheKeysDoAllThatThePointerDoes) {
                 return {Action::moreLoad, Action::lessLoad};
             case Action::stop:
                 return {Action::deeperStop, Action::shallowerStop};
+            case Action::pass:
+                return {Action::deeperPass, Action::shallowerPass};
             default:
                 return {};
         }

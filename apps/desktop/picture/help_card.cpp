@@ -142,7 +142,8 @@ double shortcut(QPainter* p, double x, double y, const QString& keys, const QFon
 std::span<const Action> keysBeside(Action action) {
     static constexpr Action kTouch[] = {Action::touchKey}, kZoom[] = {Action::nearer, Action::farther},
                             kLoad[] = {Action::moreLoad, Action::lessLoad},
-                            kStop[] = {Action::deeperStop, Action::shallowerStop};
+                            kStop[] = {Action::deeperStop, Action::shallowerStop},
+                            kPass[] = {Action::deeperPass, Action::shallowerPass};
     switch (action) {
         case Action::touch:
             return kTouch;
@@ -152,13 +153,15 @@ std::span<const Action> keysBeside(Action action) {
             return kLoad;
         case Action::stop:
             return kStop;
+        case Action::pass:
+            return kPass;
         default:
             return {};
     }
 }
 
 bool isBeside(Action key) {
-    for (const Action action : {Action::touch, Action::zoom, Action::load, Action::stop})
+    for (const Action action : {Action::touch, Action::zoom, Action::load, Action::stop, Action::pass})
         for (const Action beside : keysBeside(action))
             if (beside == key) return true;
     return false;

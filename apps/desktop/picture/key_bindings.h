@@ -45,6 +45,8 @@ enum class Action {
     lessLoad,
     deeperStop,
     shallowerStop,
+    deeperPass,
+    shallowerPass,
     latchPedal,
     faster,
     slower,

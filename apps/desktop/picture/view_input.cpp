@@ -484,6 +484,10 @@ bool ViewWidget::State::keyAction(Action action, bool slow, bool repeated, const
         case Action::shallowerStop:
             stepStop(action == Action::deeperStop ? 1.0 : -1.0);
             return hand != nullptr;
+        case Action::deeperPass:
+        case Action::shallowerPass:
+            stepPerPass(action == Action::deeperPass ? 1.0 : -1.0);
+            return hand != nullptr;
         case Action::goToBur:
             widget->goToBur();
             return true;

@@ -1171,6 +1171,14 @@
         <source>Previous bur</source>
         <translation>前のバー</translation>
     </message>
+    <message>
+        <source>One pass on, shallower</source>
+        <translation>1回の深さを入れる、浅く</translation>
+    </message>
+    <message>
+        <source>One pass deeper, off</source>
+        <translation>1回の深さを深く、切る</translation>
+    </message>
 </context>
 <context>
     <name>Measuring</name>

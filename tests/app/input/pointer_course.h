@@ -126,9 +126,10 @@ class PointerCourse {
             const bool touches = last.depthMm > 0.0, cuts = removedMm3() > before;
             figures.pressedS += loop->periodS();
             if (settled && !touches && !cuts && saysNothing()) figures.idleS += loop->periodS();
-            // The hand is a little behind a pointer that moves, and comes to rest a moment after it.
+            // The hand is a little behind a pointer that moves, a light one more, and comes to rest half a second after
+            // it.
             double speed = 0.0;
-            for (const double ago : {0.02, 0.05, 0.1, 0.2, 0.3})
+            for (const double ago : {0.02, 0.05, 0.1, 0.2, 0.3, 0.5})
                 speed = std::max(speed, (path.at(t) - path.at(t - ago)).norm() / ago);
             if (settled && speed < 60.0 && hand->idle() != PointerController::Idle::onItsWay) {
                 const double off = tipOff(path.at(t - 0.012)).norm();

@@ -308,7 +308,7 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
         step -= std::max(0.0, step.dot(against) - missing) * against;
         // Between two walls a step along one presses on the other: with more than the load it only gives way, or comes
         // out.
-        const double free = std::clamp((1.0 + kOverLoad - allN / wish.loadN) / kOverLoad, 0.0, 1.0);
+        const double free = std::clamp((1.0 + 2.0 * kOverLoad - allN / wish.loadN) / kOverLoad, 0.0, 1.0);
         const Vec3 along = step.dot(against) * against, beyond = step - along;
         const Vec3 out = std::min(0.0, beyond.dot(way)) * way;
         step = along + out + free * (beyond - out);

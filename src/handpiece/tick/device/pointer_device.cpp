@@ -32,7 +32,7 @@ constexpr double kMaxShare = 0.8;  // of an error, in one tick
 // What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
 // The load falls to none on the last of the way, some hundredths of a millimetre, or a stroke would end far above it.
 constexpr double kEndStiffer = 4.0;
-constexpr double kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
+constexpr double kLeastTravelMmS = 100.0, kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
 constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
 constexpr double kOverLoad = 0.05;               // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
@@ -233,7 +233,7 @@ void PointerDevice::State::turn(double periodS) noexcept {
 /// its load.
 double PointerDevice::State::travelMmS() const noexcept {
     if (!(wish.mostN > 0.0) || wish.regrips) return settings.travelMmS;
-    return std::min(settings.travelMmS, kTravelMmSPerN * wish.mostN);
+    return std::min(settings.travelMmS, std::max(kLeastTravelMmS, kTravelMmSPerN * wish.mostN));
 }
 
 void PointerDevice::State::follow(const Vec3& place, bool still, double h) noexcept {

@@ -59,6 +59,8 @@ class EditorTest : public ShellTest {
         ASSERT_EQ(box->currentIndex(), index);
     }
     void type(QWidget* field, const QString& text) {
+        // A field that was only just made is not on the screen yet, and hears of no focus.
+        (void)QTest::qWaitFor([field] { return field->isVisible(); });
         field->setFocus();
         QTest::keyClick(field, Qt::Key_A, Qt::ControlModifier);
         QTest::keyClicks(field, text);

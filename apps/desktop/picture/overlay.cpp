@@ -234,6 +234,8 @@ void scaleBar(QPainter& p, const QRectF& area, const OverlayState& state) {
     p.restore();
 }
 
+constexpr double kRoomForPass = 760.0;
+
 /// Gives where it ends.
 double readout(QPainter& p, const QRectF& area, const OverlayState& state) {
     if (!state.hasHand) return area.left() + kMargin;
@@ -253,9 +255,11 @@ double readout(QPainter& p, const QRectF& area, const OverlayState& state) {
     chips.push_back({Texts::tr("Load"), Texts::tr("%1 N").arg(number(state.loadN, 1)), std::nullopt});
     chips.push_back({Texts::tr("Depth stop"),
                      state.stopMm ? Texts::tr("%1 mm").arg(number(*state.stopMm, 1)) : Texts::tr("off"), std::nullopt});
-    chips.push_back({Texts::tr("Pass"),
-                     state.perPassMm ? Texts::tr("%1 mm").arg(number(*state.perPassMm, 1)) : Texts::tr("off"),
-                     std::nullopt});
+    // In a small picture it would lie over the tooth; the panel says it too.
+    if (area.width() >= kRoomForPass)
+        chips.push_back({Texts::tr("Pass"),
+                         state.perPassMm ? Texts::tr("%1 mm").arg(number(*state.perPassMm, 1)) : Texts::tr("off"),
+                         std::nullopt});
     const QFont plain = smaller(p.font(), 0.5);
     p.save();
     const QFontMetricsF metrics(plain), heavy(bold(plain));

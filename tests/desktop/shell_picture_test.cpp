@@ -108,6 +108,9 @@ TEST_F(PictureTest, AMessageLiesOverThePictureAndAPressOnItCutsNothing) {
 TEST_F(PictureTest, AToothThatWasResetHasNoOpenPulp) {
     startWithTooth();
     view()->setLoad(input::kMaxLoadN);
+    // Straight down to the pulp.
+    view()->setStop(std::nullopt);
+    view()->setPerPass(std::nullopt);
     view()->showStandardView(view::StandardView::occlusal);
     const QPoint middle = view()->rect().center();
     ASSERT_TRUE(cut());

@@ -5,12 +5,11 @@
 /// counts it. The tick knows nothing of it.
 
 #include <QObject>
-#include <QTimer>
 #include <functional>
 #include <memory>
 #include <vector>
 
-#include "desktop/framework/job.h"
+#include "desktop/work/paced_count.h"
 #include "handpiece/app/course/live_card.h"
 #include "handpiece/app/course/live_shares.h"
 #include "handpiece/assess/preparation/preparation.h"
@@ -48,8 +47,7 @@ class LiveZones : public QObject {
     std::shared_ptr<Watched> watched_;
     double removedMm3_ = 0.0, countedMm3_ = -1.0;
     bool isSure_ = false;  ///< counted once more since: whoever listens is some milliseconds behind
-    std::unique_ptr<Job> job_;
-    QTimer timer_;
+    PacedCount count_{400};
 };
 
 }  // namespace handpiece::desktop

@@ -2,16 +2,14 @@
 #include "desktop/work/work_glass.h"
 
 #include <QColor>
-#include <algorithm>
+#include <utility>
 
 #include "desktop/work/zone_glass.h"
 #include "handpiece/app/course/live_glass.h"
-#include "handpiece/base/rt/realtime_thread.h"
 
 namespace handpiece::desktop {
 namespace {
 
-constexpr int kPauseMs = 500;
 constexpr float kLeftOpacity = 0.34f, kOverOpacity = 0.9f;
 
 view::GlassSurface glassOf(geometry::TriangleMesh&& mesh, const QColor& colour, float opacity) {
@@ -30,8 +28,7 @@ struct WorkGlass::Watched {
 };
 
 WorkGlass::WorkGlass(QObject* parent) : QObject(parent) {
-    timer_.setInterval(kPauseMs);
-    connect(&timer_, &QTimer::timeout, this, &WorkGlass::make);
+    connect(&count_, &PacedCount::due, this, &WorkGlass::make);
 }
 
 void WorkGlass::watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<simulation::LiveTooth> tooth) {
@@ -42,57 +39,38 @@ void WorkGlass::watch(std::shared_ptr<const tasks::Task> task, std::shared_ptr<s
     removedMm3_ = 0.0;
     madeMm3_ = -1.0;
     make();
-    timer_.start(kPauseMs);
+    count_.start();
 }
 
 void WorkGlass::stop() {
-    timer_.stop();
+    count_.stop();
     watched_.reset();
-    if (job_) job_.release()->abandon(this);
     if (surfaces_.empty()) return;
     surfaces_.clear();
     emit changed();
 }
 
 void WorkGlass::make() {
-    if (!watched_ || job_ || (removedMm3_ == madeMm3_ && isSure_)) return;
+    if (!watched_ || count_.isBusy() || (removedMm3_ == madeMm3_ && isSure_)) return;
     isSure_ = removedMm3_ == madeMm3_;
     madeMm3_ = removedMm3_;
-    struct Made {
-        std::vector<view::GlassSurface> surfaces;
-        qint64 tookMs = 0;
-    };
-    const auto made = std::make_shared<Made>();
-    job_ = std::make_unique<Job>(QString(), [made, watched = watched_](const core::Progress&) {
-        rt::stepBack();
-        QElapsedTimer clock;
-        clock.start();
+    const auto made = std::make_shared<std::vector<view::GlassSurface>>();
+    const auto work = [made, watched = watched_] {
         if (!watched->laid)
             watched->laid = std::make_shared<const preparation::Laid>(
                 preparation::layOn(watched->task->toothCase, *watched->task->preparation));
         course::LiveGlass glass = course::liveGlass(*watched->laid, *watched->tooth);
         if (!glass.left.triangles.empty())
-            made->surfaces.push_back(
+            made->push_back(
                 glassOf(std::move(glass.left), ZoneGlass::colourOf(preparation::SeenZone::target), kLeftOpacity));
         // Reddish purple of Okabe & Ito; the stripes tell it from all else without any colour.
         if (!glass.over.triangles.empty())
-            made->surfaces.push_back(glassOf(std::move(glass.over), QColor(204, 121, 167), kOverOpacity));
-        made->tookMs = clock.elapsed();
-    });
-    const auto end = [this] { job_.release()->deleteLater(); };
-    connect(job_.get(), &Job::done, this, [this, end, made] {
-        end();
-        timer_.setInterval(std::max<int>(kPauseMs, static_cast<int>(made->tookMs)));
-        surfaces_ = std::move(made->surfaces);
+            made->push_back(glassOf(std::move(glass.over), QColor(204, 121, 167), kOverOpacity));
+    };
+    count_.run(work, [this, made] {
+        surfaces_ = std::move(*made);
         emit changed();
     });
-    connect(job_.get(), &Job::cancelled, this, end);
-    // The preparation does not lie on this tooth, which finishing tells.
-    connect(job_.get(), &Job::failed, this, [this, end] {
-        end();
-        timer_.stop();
-    });
-    job_->start();
 }
 
 }  // namespace handpiece::desktop

@@ -5,11 +5,10 @@
 
 #include <QElapsedTimer>
 #include <QObject>
-#include <QTimer>
 #include <memory>
 #include <vector>
 
-#include "desktop/framework/job.h"
+#include "desktop/work/paced_count.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/assess/task/task.h"
 #include "handpiece/senses/view/renderer.h"
@@ -42,8 +41,7 @@ class WorkGlass : public QObject {
     std::shared_ptr<Watched> watched_;
     double removedMm3_ = 0.0, madeMm3_ = -1.0;
     bool isSure_ = false;  ///< made once more since: whoever listens is some milliseconds behind
-    std::unique_ptr<Job> job_;
-    QTimer timer_;
+    PacedCount count_{500};
     std::vector<view::GlassSurface> surfaces_;
 };
 

@@ -102,7 +102,7 @@ TEST_F(MarkingTest, AFolderIsScoredLookedAtOverriddenAndExported) {
     click("sheetCommentPick");
     QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier, QPoint(4, view()->height() / 2));
     EXPECT_TRUE(part<QPushButton>("sheetCommentPick")->isChecked()) << "there is no tooth";
-    const QPoint aside = view()->rect().center() + QPoint(80, 50);
+    const QPoint aside = view()->rect().center() + QPoint(view()->width() / 10, view()->width() / 16);
     const view::Ray ray =
         view::rayThrough(view()->camera(), {view()->width(), view()->height()}, core::Vec2(aside.x(), aside.y()));
     QTest::mouseClick(view(), Qt::LeftButton, Qt::NoModifier, aside);

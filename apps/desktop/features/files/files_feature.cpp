@@ -295,11 +295,12 @@ void FilesFeature::listRecent() {
     recent_->menuAction()->setEnabled(number > 0);
 }
 
-/// Of which tooth and when: the name of a recording's file says neither to a person.
+/// Of which tooth and when, where the program named the file by its time; a name that a person gave, or a code that
+/// hides whose it is, stays. Empty: such a name.
 QString FilesFeature::recordingTitle() const {
     const QFileInfo file(toQString(simulator_.document().caseFile));
-    QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
-    if (!when.isValid()) when = file.lastModified();
+    const QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
+    if (!when.isValid()) return {};
     return tr("Recording of %1, %2")
         .arg(toothName(simulator_.toothCase()->fdiNumber), QLocale().toString(when, QLocale::ShortFormat));
 }
@@ -308,8 +309,9 @@ void FilesFeature::showTitle() {
     const Document& document = simulator_.document();
     QString name = QString::fromStdString(document.name);
     if (simulator_.mode() == Simulator::Mode::replay && simulator_.toothCase() &&
-        document.caseFile.filename() == document.name)
-        name = recordingTitle();
+        document.caseFile.filename() == document.name) {
+        if (const QString told = recordingTitle(); !told.isEmpty()) name = told;
+    }
     // A starter tooth has a name in every language until it is saved under one of the student's own.
     if (document.starter && document.attemptFile.empty() && simulator_.toothCase())
         name = toothName(simulator_.toothCase()->fdiNumber);

@@ -10,7 +10,7 @@
 namespace handpiece::desktop {
 namespace {
 
-constexpr int kMostOfWidth = 36, kLowScreen = 600, kLeastHeight = 24;
+constexpr int kMostOfWidth = 32, kLowScreen = 600, kLeastHeight = 24;
 
 }  // namespace
 
@@ -78,6 +78,12 @@ void Docks::arrange(Detail detail) {
         }
         if (place.width > 0) {
             below << dock;
+            // Those in one row share the width that the picture has.
+            auto* scroll = static_cast<QScrollArea*>(dock->widget());
+            if (const int most = window_->screen()->availableSize().width() / 6; scroll->minimumWidth() > most) {
+                scroll->setMinimumWidth(most);
+                scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+            }
             widths << place.width;
         }
         dock->show();

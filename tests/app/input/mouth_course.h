@@ -52,7 +52,7 @@ struct MouthWay {
     double againS = 1e9;  ///< pressed once more from then on, to the end
     double loadN = 1.0;
     DepthLimits limits{kFirstStopMm, kFirstPerPassMm};
-    bool isLeftHanded = false;
+    bool isLeftHanded = false, turns = true;
 };
 
 struct MouthFigures {
@@ -124,12 +124,12 @@ class MouthCourse {
                 if (!at || to != *at) hand->move(to);
                 at = to;
                 if (!pressed && t >= way_.pressS && t < way_.releaseS) {
-                    hand->press(to, true);
+                    hand->press(to, way_.turns);
                     pressed = true;
                 }
                 if (!pressed && t >= way_.againS) {
                     began_.reset();
-                    hand->press(to, true);
+                    hand->press(to, way_.turns);
                     pressed = true;
                 }
                 if (pressed && t >= way_.releaseS && (t < way_.againS || t + 0.01 >= way_.endS)) {

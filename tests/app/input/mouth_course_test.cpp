@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <map>
 
+#include "handpiece/assess/hand/hand.h"
 #include "support/random.h"
 
 namespace handpiece::input {
@@ -89,6 +90,73 @@ TEST(MouthCourse, alongAFissureTheDepthIsEven) {
         EXPECT_LT(*most, kFirstPerPassMm + 0.05);
         EXPECT_LT(f.outsideMm3, 0.001);
     }
+}
+
+// Four times there and back: what a recording says of the hand is what the script did, as the report measures it.
+TEST(MouthCourse, aRecordingHasThePathAndTheTimeOfTheScript) {
+    for (const bool isFissure : {true, false}) {
+        MouthWay way;
+        way.name = isFissure ? "46/fissure" : "46/buccal";
+        if (!isFissure) way.eye = view::StandardView::buccal;
+        const double high = isFissure ? 350 : 330;
+        const Vec2 from(isFissure ? 390 : 370, high), to(isFissure ? 500 : 530, high);
+        const double beginsS = 1.0, onceS = (to - from).norm() / 40.0, lastsS = 4.0 * onceS;
+        way.at = [=](double t) {
+            const double s = std::clamp((t - beginsS) / onceS, 0.0, 4.0), r = std::fmod(s, 2.0);
+            return Vec2(from + (r <= 1.0 ? r : 2.0 - r) * (to - from));
+        };
+        way.releaseS = beginsS + lastsS + 0.1;
+        way.endS = way.releaseS + 0.4;
+        MouthCourse course(mouthAt(46), way);
+        const std::vector<measures::Request> asked{{"path-length"}, {"force", {.statistic = "mean"}}, {"time"}};
+        hand::HandMeasures measures(asked, {});
+        double downS = 0.0;
+        course.look = [&](double t, const messages::HapticSample& sample) {
+            downS += sample.pedal > 0.5 ? course.loop->periodS() : 0.0;
+            if (t < beginsS || t > beginsS + lastsS) return;
+            hand::Sample s;
+            s.timeS = t;
+            s.lastsS = course.loop->periodS();
+            s.burInTooth.positionMm = Vec3(sample.positionMm.data());
+            s.burInTooth.orientation = course.tilt();
+            s.forceN = Vec3(sample.forceN.data()).norm();
+            s.depthMm = sample.depthMm;
+            s.speedRpm = sample.speedRpm;
+            s.tissue = static_cast<cases::Tissue>(sample.tissue);
+            s.isPedalDown = sample.pedal > 0.5;
+            s.isCutting = (sample.flags & messages::kCutting) != 0;
+            measures.take(s);
+        };
+        const MouthFigures f = course.play();
+        const std::vector<measures::Measured> told = measures.measured();
+        ASSERT_TRUE(told[0].value && told[2].value) << told[0].reason;
+        std::printf("  %s: drawn %.2f mm, recorded %.2f; %.3f N; %.2f of %.2f s, pedal %.2f\n", way.name.c_str(),
+                    f.drawnMm, *told[0].value, told[1].value.value_or(-1.0), *told[2].value, lastsS, downS);
+        // Of each turn a ruler of 0.2 mm may lose half of itself.
+        EXPECT_NEAR(*told[0].value, f.drawnMm, (isFissure ? 0.03 : 0.05) * f.drawnMm);
+        EXPECT_NEAR(*told[2].value, lastsS, 0.03 * lastsS);
+    }
+}
+
+// The bur stands: between the walls of a fissure and over its ridges the tip goes several times as far as the hand.
+TEST(MouthCourse, touchedAlongAFissureItDoesNotChatter) {
+    MouthWay way;
+    way.turns = false;
+    way.at = [](double t) { return Vec2(390 + 110 * std::clamp((t - 1.0) / 2.75, 0.0, 1.0), 350); };
+    way.releaseS = 3.8;
+    way.endS = 4.0;
+    MouthCourse course(mouthAt(46), way);
+    double tipMm = 0.0;
+    std::optional<Vec3> before;
+    course.look = [&](double t, const messages::HapticSample& sample) {
+        if (t < 1.0 || t > 3.75) return;
+        const Vec3 tip(sample.proxyPositionMm.data());
+        tipMm += before ? (tip - *before).norm() : 0.0;
+        before = tip;
+    };
+    const MouthFigures f = course.play();
+    std::printf("  drawn %.2f mm, tip %.2f\n", f.drawnMm, tipMm);
+    EXPECT_LT(tipMm, 5.0 * f.drawnMm);  // 25 times without that, at 1 kHz
 }
 
 TEST(MouthCourse, pressesAndDragsAtRandom) {

@@ -13,6 +13,7 @@
 #include "desktop/features/device/profile_box.h"
 #include "desktop/widgets/force_gauge.h"
 #include "desktop/widgets/parts.h"
+#include "desktop/widgets/scrolled.h"
 #include "desktop/widgets/theme.h"
 #include "handpiece/base/core/error.h"
 
@@ -49,7 +50,9 @@ FirstPlugIn::FirstPlugIn(Simulator& simulator, bool realTime, QWidget* parent)
     pages_->addWidget(connectPage());
     pages_->addWidget(calibratePage());
     pages_->addWidget(feelPage());
-    column->addWidget(pages_, 1);
+    auto* inPages = new QVBoxLayout;
+    inPages->addWidget(pages_);
+    column->addWidget(new Scrolled(inPages, this), 1);
     auto* row = new QHBoxLayout;
     later_ = named(new QPushButton(tr("Later"), this), "firstLater", tr("Later"),
                    tr("Work with what fits the model; Device, Set up... comes back here"));

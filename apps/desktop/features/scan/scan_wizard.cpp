@@ -24,6 +24,7 @@
 #include "desktop/features/scan/tissue_page.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
+#include "desktop/widgets/scrolled.h"
 #include "desktop/widgets/theme.h"
 
 namespace handpiece::desktop {
@@ -130,7 +131,9 @@ ScanWizard::ScanWizard(std::filesystem::path unfinished, const QString& folder, 
     for (int i = 0; i < steps_->count(); ++i)
         widest = std::max(widest, fontMetrics().horizontalAdvance(steps_->item(i)->text()));
     steps_->setFixedWidth(widest + 30);
-    right->addWidget(pages_, 1);
+    auto* inPages = new QVBoxLayout;
+    inPages->addWidget(pages_);
+    right->addWidget(new Scrolled(inPages, this), 1);
     middle->addLayout(right, 1);
     column->addLayout(middle, 1);
 

@@ -29,12 +29,15 @@ constexpr double kMinN = 1e-9;          // a load that has a direction
 // low pass; what is then left goes slowly, or a bur that cuts would swing round its place.
 constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
 constexpr double kMaxShare = 0.8;  // of an error, in one tick
+// In a fissure and over a ridge the tip goes farther than the hand: its spring is softer by as much, and for so long.
+constexpr double kSteepS = 0.2, kLatelyS = 0.01, kLeastSwingMm = 2e-3, kSofter = 4.0, kSteepest = 12.0;
 // What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
 // The load falls to none on the last of the way, some hundredths of a millimetre, or a stroke would end far above it.
 constexpr double kEndStiffer = 4.0;
-constexpr double kLeastTravelMmS = 100.0, kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
+constexpr double kLeastTravelMmS = 75.0, kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
 constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
-constexpr double kOverLoad = 0.05;               // of the load, more: then it only gives way
+constexpr double kGiveGain = 4.0, kGiveShare = 0.5;
+constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
@@ -106,6 +109,9 @@ struct PointerDevice::State {
     bool started = false, wasAway = false, wasPressing = false;
     bool watches = false;  // has been told of its tip since the last reading
     Vec3 tipMm = Vec3::Zero(), pressN = Vec3::Zero();
+    Vec3 wasTipMm = Vec3::Zero(), steppedMm = Vec3::Zero();  // the tip before, and the hand's step since
+    Vec3 tipWentMm = Vec3::Zero();  // of late, across the way: as it went, all of it, and the hand's
+    double tipWayMm = 0.0, handWayMm = 0.0, steep = 1.0;
     double farMm = 0.0;             // along the way, of the place that it wanted without a load
     Vec3 settledMm = Vec3::Zero();  // by which the hand stays beside a tip that is in its place, on a slope
     Vec3 liftedMm = Vec3::Zero();   // where an away hand goes
@@ -211,6 +217,11 @@ void PointerDevice::State::begin(bool pressing) noexcept {
     if (pressing && !wasPressing) {
         wantedMm -= farMm * wish.way;
         settledMm.setZero();
+        steppedMm.setZero();
+        wasTipMm = tipMm;
+        tipWentMm.setZero();
+        tipWayMm = handWayMm = 0.0;
+        steep = 1.0;
     }
     if (!pressing && wasPressing) {
         wantedMm = positionMm;
@@ -269,7 +280,13 @@ void PointerDevice::State::move(double h) noexcept {
     const Vec3 pullN = mass * wantedMmS2 + b * wantedMmS + k * (wantedMm - positionMm);
     // What meets something has no way to go on: a person's hand stops, it does not swing.
     const bool meets = wish.mostN > 0.0 && forceN.squaredNorm() > 0.0;
-    const Vec3 going = meets ? heldTo(velocityMmS, kMetMmSPerN * wish.mostN) : velocityMmS;
+    Vec3 going = meets ? heldTo(velocityMmS, kMetMmSPerN * wish.mostN) : velocityMmS;
+    if (meets) {
+        // Slower the more of its pull is used up: its mass does not swing on into soft tissue.
+        const double bearN = forceN.norm(), most = kMetMmSPerN * std::max(0.0, wish.mostN - bearN);
+        const Vec3 against = forceN / bearN;
+        going += std::max(0.0, -going.dot(against) - most) * against;
+    }
     velocityMmS =
         (h / (mass + h * b + h * h * k)) * (mass / h * going + (meets ? heldTo(pullN, wish.mostN) : pullN) + forceN);
     positionMm += h * velocityMmS;
@@ -279,7 +296,7 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     // Shares of what is left, so that no period is too long: of the way to a place, of a force that is missing.
     const double k = capability.maxStiffnessNPerMm, b = settings.dampingNSPerMm;
     const double back = 1.0 - core::exp(-periodS * kEndStiffer * settings.stiffnessNPerMm / b);
-    const double mmPerN = (1.0 - core::exp(-periodS * k / b)) / k;
+    const double part = 1.0 - core::exp(-periodS * k / b), mmPerN = part / k;
     const Vec3& way = wish.way;
     const auto across = [&](const Vec3& v) { return Vec3(v - way * way.dot(v)); };
     if (!watches) {  // before the first tick has told it of its tip
@@ -294,9 +311,23 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const double meets = kStepShare * wish.loadN / (k * std::min(periodS, kUsualPeriodS) + kTissueDampingNSPerMm);
     const double most = std::min(settings.approachMmS, meets) * periodS, ahead = left.dot(way) + endMm,
                  allN = pressN.norm();
-    const double missing = (wish.loadN - allN) * mmPerN;  // millimetres of it
+    // Millimetres of it; what is too much goes sooner, as far as a force that is known a tick later lets it.
+    const double lacksN = wish.loadN - allN;
+    const double missing = lacksN < 0.0 ? lacksN * std::min(kGiveShare, kGiveGain * part) / k : lacksN * mmPerN;
     const double in = std::min({most, missing, ahead * back - pressN.dot(way) * mmPerN});
-    const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share);
+    // What of the tip's way goes to and fro.
+    const double lately = core::exp(-periodS / kLatelyS);
+    const Vec3 went = across(tipMm - wasTipMm);
+    tipWentMm = lately * tipWentMm + went;
+    tipWayMm = lately * tipWayMm + went.norm();
+    handWayMm = lately * handWayMm + across(steppedMm).norm();
+    const double swings = tipWayMm - tipWentMm.norm();
+    steep = 1.0 + (steep - 1.0) * core::exp(-periodS / kSteepS);
+    // A bur that turns cuts itself free, and must hold its place the better for it.
+    const double softer = wish.pedal > 0.0 ? 1.0 : kSofter;
+    if (swings > kLeastSwingMm)
+        steep = std::clamp(softer * swings / std::max(handWayMm, kLeastSwingMm), steep, kSteepest);
+    const double share = 1.0 - core::exp(-periodS / kTipS), gain = std::min(kTipGain, kMaxShare / share / steep);
     settledMm = heldTo(across(settledMm) + gain * (1.0 - core::exp(-periodS / kSettleS)) * beside, wish.loadN / k);
     // With the pointer, as the uncut tooth rises and falls under it; and on until the tip is under it.
     const Vec3 over = across(tipMm - positionMm);
@@ -319,6 +350,8 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     step = tipMm + heldTo(positionMm + step - tipMm, settings.farthestMm) - positionMm;
     positionMm += step;
     velocityMmS = step / periodS;
+    wasTipMm = tipMm;
+    steppedMm = step;
 }
 
 }  // namespace handpiece::device

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <utility>
 
 #include "handpiece/base/core/portable_math.h"
 
@@ -34,6 +35,7 @@ void ForceModel::setParameters(const Parameters& parameters) noexcept {
 }
 
 const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, bool lost, double periodS) noexcept {
+    const bool passesGingiva = std::exchange(passesGingiva_, false);
     guard_.look(read, lost, periodS, parameters_.fadeInS);
     if (guard_.faulted()) return touch_;
     touch_.deviceInTooth = guard_.pose();
@@ -71,7 +73,7 @@ const Touch& ForceModel::feel(contact::Method& method, const core::Pose& read, b
     touch_.proxyInTooth = proxy_.pose();
     touch_.touching = proxy_.touching();
     touch_.passes = proxy_.passes();
-    method.yielding(touch_.proxyInTooth, touch_.soft);
+    if (!passesGingiva) method.yielding(touch_.proxyInTooth, touch_.soft);
     touch_.tissue = proxy_.strongestTissue();
     if (touch_.touching && proxy_.isHeldOnly()) {
         touch_.isHeldOnly = true;

@@ -56,6 +56,9 @@ class ForceModel {
     /// The tooth or the bur is another one, so tissue may lie round the bur: no force until the device's pose is clear
     /// of it, then it fades in.
     void waitUntilClear() noexcept HANDPIECE_REALTIME { waiting_ = true; }
+    /// As that, and in this tick gingiva is not felt either: a handpiece that is taken out and brought in meets
+    /// nothing.
+    void meetNothing() noexcept HANDPIECE_REALTIME { waiting_ = passesGingiva_ = true; }
     [[nodiscard]] bool waiting() const noexcept { return waiting_; }
 
     [[nodiscard]] const Parameters& parameters() const noexcept { return parameters_; }
@@ -88,7 +91,7 @@ class ForceModel {
     core::Vec3 bristleMm_ = core::Vec3::Zero(), lastProxyMm_ = core::Vec3::Zero();  // of friction
     core::Vec3 tangentialN_ = core::Vec3::Zero();                                   // of the turning bur, smoothed
     std::array<double, cases::kTissueCount> lastShares_{};                          // of the tissues in the contact
-    bool waiting_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
+    bool waiting_ = false, passesGingiva_ = false, wasWaiting_ = false, wasFaulted_ = false, wasTouching_ = false;
 };
 
 }  // namespace handpiece::force

@@ -102,7 +102,7 @@ device::Reading HapticLoop::readDevice(double elapsedS) noexcept {
             rounded(reading.burInTooth.orientation.coeffs()[k], messages::kOrientationStep);
     reading.pedal =
         std::isfinite(reading.pedal) ? rounded(std::clamp(reading.pedal, 0.0, 1.0), messages::kPedalStep) : 0.0;
-    if ((reading.buttons & device::kRegripsButton) != 0) force_.waitUntilClear();
+    if ((reading.buttons & device::kRegripsButton) != 0) force_.meetNothing();
     return reading;
 }
 

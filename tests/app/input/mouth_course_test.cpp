@@ -159,6 +159,34 @@ TEST(MouthCourse, touchedAlongAFissureItDoesNotChatter) {
     EXPECT_LT(tipMm, 5.0 * f.drawnMm);  // 25 times without that, at 1 kHz
 }
 
+// A deep hole, as who turns the depth of a pass up makes it: the bur comes out, and cuts elsewhere.
+TEST(MouthCourse, outOfADeepHoleAndOn) {
+    for (const char* bur : {"245", "round-4"}) {
+        MouthWay way;
+        way.name = "46/deep";
+        way.bur = bur;
+        way.loadN = 3.0;
+        way.limits = {4.0, 3.0};
+        const Vec2 from(440, 350), along(15, 12);
+        way.at = [=](double t) {
+            return t < 4.2 ? Vec2(from + std::clamp((t - 2.0) / 1.0, 0.0, 1.0) * along) : Vec2(360, 300);
+        };
+        way.releaseS = 3.5;
+        way.againS = 4.7;
+        way.endS = 6.0;
+        MouthCourse course(mouthAt(46), way);
+        double freeS = -1.0;
+        course.look = [&](double t, const messages::HapticSample& sample) {
+            if (t > way.releaseS && freeS < 0.0 && sample.depthMm <= 0.0) freeS = t - way.releaseS;
+        };
+        const MouthFigures f = course.play();
+        print(way, f);
+        EXPECT_GT(f.removedMm3, 1.0);
+        EXPECT_LT(f.notNearestMm, 0.15) << bur;
+        EXPECT_TRUE(freeS >= 0.0 && freeS < 1.0) << bur << ' ' << freeS;
+    }
+}
+
 TEST(MouthCourse, pressesAndDragsAtRandom) {
     const char* asked = std::getenv("HANDPIECE_POINTER_SWEEP");
     const int many = asked ? std::max(1, std::atoi(asked)) : 6;

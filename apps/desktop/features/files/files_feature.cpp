@@ -301,8 +301,10 @@ QString FilesFeature::recordingTitle() const {
     const QFileInfo file(toQString(simulator_.document().caseFile));
     const QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
     if (!when.isValid()) return {};
+    QString tooth = toothName(simulator_.toothCase()->fdiNumber);
+    if (tooth.isEmpty()) tooth = QString::fromStdString(simulator_.toothCase()->name);  // a block
     return tr("Recording of %1, %2")
-        .arg(toothName(simulator_.toothCase()->fdiNumber), QLocale().toString(when, QLocale::ShortFormat));
+        .arg(tooth, QLocale().toString(when, QLocale::ShortFormat));
 }
 
 void FilesFeature::showTitle() {

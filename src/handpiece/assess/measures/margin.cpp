@@ -18,6 +18,36 @@ constexpr double kTipMm = 0.1;
 constexpr double kLeastSin = 0.2;     // between both surfaces: flatter, there is no edge
 constexpr double kProximalCos = 0.5;  // the uncut surface faces the tooth beside within 60 degrees
 
+/// Whether more than a twentieth is gone of where the uncut tooth comes nearest to the one beside it. A cavity that
+/// leaves all of that has its margin on the marginal ridge, and how far that is from the other tooth says nothing of
+/// the contact.
+bool isContactOpened(const CutTooth& tooth, const Preparation::Other& other, const Vec3& towards) {
+    constexpr double kRaysMm = 0.25, kContactMm = 0.1;
+    const geometry::TriangleTree& whole = tooth.whole().tree;
+    const Vec3 across = towards.unitOrthogonal(), along = towards.cross(across), middle = whole.bounds().centre();
+    const double reach = 0.5 * whole.bounds().size().norm();
+    std::vector<std::pair<double, Vec3>> faces;
+    double least = std::numeric_limits<double>::infinity();
+    for (double a = -reach; a <= reach; a += kRaysMm)
+        for (double b = -reach; b <= reach; b += kRaysMm) {
+            const Vec3 from = middle + a * across + b * along + reach * towards;
+            const geometry::RayMeeting meeting = whole.firstMeeting(from, -towards, 2.0 * reach);
+            if (meeting.triangle == geometry::kNoTriangle) continue;
+            const Vec3 p = from - meeting.distanceMm * towards;
+            const double off = other.whole->tree.signedDistance(other.inTooth.applyInverse(p));
+            least = std::min(least, off);
+            faces.emplace_back(off, p);
+        }
+    CutTooth::Look look(tooth);
+    std::size_t contact = 0, gone = 0;
+    for (const auto& [off, p] : faces) {
+        if (off > least + kContactMm) continue;
+        ++contact;
+        gone += look.now(p) - look.before(p) > 0.5 * tooth.voxelMm();
+    }
+    return gone > contact / 20;  // an edge that the voxels round off is none
+}
+
 }  // namespace
 
 const std::vector<MarginPlace>& CutTooth::margin() {
@@ -118,7 +148,7 @@ Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
     const Vec3 middle = tooth.whole().tree.bounds().centre();
     Places even, all;
     double roughMm = 0.0;
-    bool isBeside = false;
+    bool isBeside = false, isOpened = false;
     for (const std::string_view side : {"mesial", "distal"}) {
         if (!of.side.empty() && of.side != side) continue;
         const auto towards = axisOf(p.axes, side);
@@ -127,6 +157,8 @@ Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
             const geometry::TriangleTree& tree = other.whole->tree;
             if (!((other.inTooth.apply(tree.bounds().centre()) - middle).dot(*towards) > 0.0)) continue;
             isBeside = true;
+            if (!isContactOpened(tooth, other, *towards)) continue;
+            isOpened = true;
             for (const MarginPlace& place : tooth.margin())
                 if (place.outer.dot(*towards) > kProximalCos) {
                     const double off = std::max(0.0, tree.signedDistance(other.inTooth.applyInverse(place.p)));
@@ -137,6 +169,7 @@ Taken takeProximalClearance(CutTooth& tooth, const Selection& of) {
         }
     }
     if (!isBeside) return none("no tooth stands there");
+    if (!isOpened) return none("the contact with the tooth beside it has not been opened");
     if (all.values.empty()) return none("no margin of the cavity lies on the side of the tooth beside it");
     const char* const text = "margin nearest to the tooth beside it";
     Taken taken = all.taken(of, "least", text);

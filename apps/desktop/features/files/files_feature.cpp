@@ -303,8 +303,7 @@ QString FilesFeature::recordingTitle() const {
     if (!when.isValid()) return {};
     QString tooth = toothName(simulator_.toothCase()->fdiNumber);
     if (tooth.isEmpty()) tooth = QString::fromStdString(simulator_.toothCase()->name);  // a block
-    return tr("Recording of %1, %2")
-        .arg(tooth, QLocale().toString(when, QLocale::ShortFormat));
+    return tr("Recording of %1, %2").arg(tooth, QLocale().toString(when, QLocale::ShortFormat));
 }
 
 void FilesFeature::showTitle() {

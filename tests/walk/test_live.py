@@ -52,6 +52,14 @@ class HandNearPointer(unittest.TestCase):
         early = live.HandNearPointer()
         self.assertIsNone(early.see(told(handMm=[0, 11, 5], clockS=90.5), doing()))
 
+    def test_on_its_way_it_is_free(self):
+        self.assertEqual(self.far([0.0, 11.0, 5.0], pedal=0.0, forceN=[0.0, 0.0, 0.0]), [])
+
+    def test_stays_away(self):
+        away = {"place": [0.0, 11.0, 5.0], "maps": 3000, "pedal": 0.0, "forceN": [0.0, 0.0, 0.0]}
+        self.assertEqual(len(self.far(**away)), 1)
+        self.assertEqual(self.far(**away, hint="The handpiece cannot get there"), [])
+
     def test_one_map_is_no_find(self):
         self.assertEqual(self.far([0.0, 11.0, 5.0], maps=1), [])
 
@@ -66,6 +74,11 @@ class ForceWithinLoad(unittest.TestCase):
         find = invariant.see(told(forceN=[0.0, 0.0, 3.3]), doing())
         self.assertAlmostEqual(find.numbers["over"], 3.3)
         self.assertIsNone(invariant.see(told(forceN=[0.0, 0.0, 3.3]), doing()))
+
+    def test_over_a_little_is_a_find_when_it_lasts(self):
+        invariant = live.ForceWithinLoad()
+        seen = [invariant.see(told(forceN=[0.0, 0.0, 1.3]), doing()) for _ in range(3)]
+        self.assertEqual([find is not None for find in seen], [False, True, False])
 
     def test_follows_the_load(self):
         self.assertIsNone(live.ForceWithinLoad().see(told(forceN=[0.0, 0.0, 2.1], loadN=2.0), doing()))
@@ -152,6 +165,11 @@ class Translated(unittest.TestCase):
         self.assertIn("actionUndo", invariant.see(seen, doing()).told)
         self.assertIsNone(invariant.see(seen, doing()))
 
+    def test_a_button_is_named_by_what_it_is_for(self):
+        seen = told()
+        seen["places"]["button/Discard"] = [0, 0, 1, 1]
+        self.assertIsNone(words.Translated(self.NAMES).see(seen, doing()))
+
     def test_cells_of_lists(self):
         seen = told()
         seen["places"]["burList/330, Pear"] = [0, 0, 1, 1]
@@ -170,6 +188,13 @@ class Undo(unittest.TestCase):
 
     def test_undo_gives_another_tooth(self):
         self.assertEqual(len(self.run_states((0, 0, 0, "a"), (1, 0, 1, "b"), (0, 1, 1, "x"))), 1)
+
+    def test_tells_the_two_moments(self):
+        invariant = undo.UndoGivesBack()
+        invariant.see(told(stateHash="a", timeS=3.0), doing())
+        invariant.see(told(stateHash="b", timeS=4.0, undoSteps=1, strokes=1), doing())
+        find = invariant.see(told(stateHash="x", timeS=5.0, redoSteps=1, strokes=1), doing())
+        self.assertEqual(find.moments, ["a.h5", 3.0, 5.0])
 
     def test_redo_gives_another_tooth(self):
         self.assertEqual(len(self.run_states((0, 0, 0, "a"), (1, 0, 1, "b"), (0, 1, 1, "a"), (1, 0, 1, "x"))), 1)

@@ -47,20 +47,34 @@ class Hand(unittest.TestCase):
     def path(self):
         return np.stack([np.clip(TIMES - 1.0, 0.0, 4.0), np.zeros_like(TIMES), np.full_like(TIMES, 1.0)], 1)
 
+    def judge(self, places, working=None):
+        working = np.ones(len(TIMES), bool) if working is None else working
+        return recorded.judge_hand(TIMES, places, working, PRESS, ORIGINS, DIRECTIONS)
+
     def test_on_its_path(self):
-        self.assertEqual(recorded.judge_hand(TIMES, self.path(), PRESS, ORIGINS, DIRECTIONS), [])
+        self.assertEqual(self.judge(self.path()), [])
+
+    def test_on_its_way_it_is_free(self):
+        places = self.path()
+        places[(TIMES > 3.0) & (TIMES < 3.5), 1] += 19.6
+        self.assertEqual(self.judge(places, (TIMES <= 3.0) | (TIMES >= 3.5)), [])
+
+    def test_what_works(self):
+        samples = {"force_n": np.array([[0, 0, 0], [0, 0, 0], [0, 0, 0.4]]), "pedal": np.array([0.0, 1.0, 0.0])}
+        self.assertEqual(recorded.works(samples, {}).tolist(), [False, True, True])
+        self.assertEqual(recorded.works(samples, {"latched": True}).tolist(), [False, False, True])
 
     def test_runs_away(self):
         places = self.path()
         places[(TIMES > 3.0) & (TIMES < 3.5), 1] += 19.6
-        [find] = recorded.judge_hand(TIMES, places, PRESS, ORIGINS, DIRECTIONS)
+        [find] = self.judge(places)
         self.assertAlmostEqual(find.numbers["off_mm"], 19.6, 1)
         self.assertAlmostEqual(find.numbers["seconds"], 0.5, 1)
 
     def test_before_and_after_the_press_is_free(self):
         places = self.path()
         places[(TIMES < 1.5) | (TIMES > 5.01), 1] += 19.6
-        self.assertEqual(recorded.judge_hand(TIMES, places, PRESS, ORIGINS, DIRECTIONS), [])
+        self.assertEqual(self.judge(places), [])
 
 
 class Force(unittest.TestCase):
@@ -73,6 +87,15 @@ class Force(unittest.TestCase):
         [find] = recorded.judge_force(TIMES, forces, PRESS)
         self.assertAlmostEqual(find.numbers["force_n"], 3.16, 2)
         self.assertAlmostEqual(find.numbers["seconds"], 0.5, 2)
+
+    def test_a_moment_over(self):
+        forces = np.tile([0.0, 0.0, 1.0], (len(TIMES), 1))
+        forces[2000:2010, 0] = 0.8
+        self.assertEqual(recorded.judge_force(TIMES, forces, PRESS), [])
+        forces[2500:2515, 0] = 0.8
+        self.assertEqual(recorded.judge_force(TIMES, forces, PRESS), [])
+        forces[2000:2010, 0] = 2.8
+        self.assertEqual(len(recorded.judge_force(TIMES, forces, PRESS)), 1)
 
 
 class Removed(unittest.TestCase):
@@ -110,6 +133,39 @@ class Removed(unittest.TestCase):
         [find] = self.judge(groove(0.0, 4.0, 0.0, 2.2), stop_mm=1.5)
         self.assertEqual(find.invariant, "removed-to-stop")
         self.assertAlmostEqual(find.numbers["mm"], 2.2, 0)
+
+
+class Session:
+    """Of a module for Python: two sittings, the second from 10 s on, and the tooth's hash at each second."""
+
+    def __init__(self, _):
+        pass
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def events(self):
+        return [{"name": "resume", "time_s": 10.0}]
+
+    def tooth_at(self, seconds):
+        tooth = Session(None)
+        tooth.state_hash = {3.0: "a", 5.0: "b", 13.0: "a"}[seconds]
+        return tooth
+
+
+class SameTooth(unittest.TestCase):
+    def same(self, then, now):
+        return recorded.same_tooth("a.h5", then, now, type("Module", (), {"Session": Session}))
+
+    def test_as_recorded(self):
+        self.assertTrue(self.same([0, 3.0], [1, 3.0]))
+        self.assertFalse(self.same([0, 3.0], [0, 5.0]))
+
+    def test_a_sitting_that_was_not_recorded(self):
+        self.assertFalse(self.same([0, 3.0], [2, 3.0]))
 
 
 if __name__ == "__main__":

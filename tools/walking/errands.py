@@ -3,12 +3,12 @@
 handpiece hides. Each a step of player.py's kind."""
 import time
 
-from . import spots
+from . import patience, spots
 from .finds import Find
 from .glance import hidden_share
 from .player import OPENS_S, Player
 
-JUDGED_S = 400.0
+JUDGED_S, CLOSES_S = 400.0, 30.0
 MOST_HIDDEN = 1.0 / 3.0
 
 
@@ -64,13 +64,16 @@ class Errands(Player):
         before = self.hand().get("recording")
         self.desk.key("Return")
         self.give_up_work()
-        self.wait(lambda: self.is_open() and self.hand().get("recording") != before, 60.0)
+        # Where the chart stands at no tooth (a block, a replay) nothing is opened.
+        if self.wait(lambda: self.hand().get("busy"), 3.0):
+            self.wait(lambda: self.is_open() and self.hand().get("recording") != before, 60.0)
         self.doing.eye_is_walkers = False
         self.close_windows()
 
     def do_crash(self, step):
         """Killed in the middle of it all; what was done comes back bit for bit."""
         was = self.hand() if self.at_rest() and self.is_open() else {}
+        then = self.moment(was) if was else None
         time.sleep(2.0)  # what is recorded is on the disk within a second
         self.watch.pause()
         self.desk.crash()
@@ -82,9 +85,12 @@ class Errands(Player):
             self.find(Find("recovers", "after a kill no work is offered to be brought back"))
             return
         self.desk.click("noticeRemedy")
-        if not self.wait(lambda: self.is_open() and self.hand().get("stateHash") == was["stateHash"], OPENS_S):
+        if not self.wait(lambda: self.is_open() and self.hand().get("recording") == was["recording"], OPENS_S):
+            self.find(Find("recovers", "after a kill the work does not come back"))
+        elif not self.is_again(was):
             self.find(Find("recovers", f"{was['removedMm3']:.3f} mm³ were gone before a kill, {self.hand().get('removedMm3', 0.0):.3f} "
-                           "mm³ are after the recovery, and the tooth is another"))
+                           "mm³ are after the recovery, and the tooth is another",
+                           moments=[was["recording"], then, self.moment(self.hand())]))
 
     def do_quit(self, step):
         """By its key, with what was cut given up; then started again."""
@@ -96,14 +102,15 @@ class Errands(Player):
         self.over_view()
         self.watch.pause()
         self.desk.key("ctrl+q")
-        for _ in range(150):
-            if self.desk.app.poll() is not None:
-                break
+        end = time.monotonic() + CLOSES_S * patience.times()
+        while self.desk.app.poll() is None and time.monotonic() < end:
             if "unsavedDialog" in self.desk.map().get("windows", []):
                 self.desk.click("button/Discard")
             time.sleep(0.2)
         if self.desk.app.poll() is None:
-            self.find(Find("dialog-answers", "the window does not close at Ctrl+Q"))
+            # What a job that hears nothing keeps alive has no window any more.
+            what = "the window does not close" if self.desk.windows("handpiece") else "the window is gone, the program does not end"
+            self.find(Find("dialog-answers", f"{what} at Ctrl+Q"))
             self.desk.crash()
         elif self.desk.app.returncode != 0:
             self.find(Find("alive", f"the program ended with {self.desk.app.returncode} when it was closed"))
@@ -116,6 +123,7 @@ class Errands(Player):
     def do_replay(self, step):
         """What was done so far is watched; the tooth comes back as it was."""
         was = self.hand() if self.at_rest() and self.is_open() else {}
+        then = self.moment(was) if was else None
         self.over_view()
         self.desk.key("ctrl+y")
         if not self.wait(lambda: self.hand().get("mode") == "replay", 120.0):
@@ -124,8 +132,13 @@ class Errands(Player):
         self.desk.click("replayClose")
         if not self.wait(lambda: self.is_open(), OPENS_S):
             self.find(Find("opens", "the tooth does not come back from its replay"))
-        elif was.get("stateHash") and self.at_rest() and self.hand()["stateHash"] != was["stateHash"]:
-            self.find(Find("replay-gives-back", "after its replay the tooth is another than before"))
+        elif was.get("stateHash") and not self.is_again(was):
+            self.find(Find("replay-gives-back", "after its replay the tooth is another than before",
+                           moments=[was["recording"], then, self.moment(self.hand())]))
+
+    def is_again(self, was):
+        """At rest, and the tooth that it was."""
+        return self.wait(lambda: self.at_rest() and self.hand().get("stateHash") == was["stateHash"], 3.0)
 
     def do_glance(self, step):
         """How much of the tooth the handpiece hides: the picture with it and without, the bur where it is."""

@@ -8,11 +8,13 @@ import tomllib
 @dataclasses.dataclass
 class Find:
     """`invariant`: its name (docs/walk.md); `told`: one sentence; `numbers`: what was measured, by names with units;
-    `step`: the place in the way."""
+    `step`: the place in the way; `moments`: a recording and two of its times at which the tooth is to be the same, where
+    only the window's word speaks against it."""
     invariant: str
     told: str
     numbers: dict = dataclasses.field(default_factory=dict)
     step: int = -1
+    moments: list = dataclasses.field(default_factory=list)
 
     def as_json(self):
         return dataclasses.asdict(self)

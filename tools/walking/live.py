@@ -4,12 +4,16 @@ what the walker is doing; it gives a Find, or None. Plain data in, so tests plan
 import dataclasses
 import math
 
-from . import eye
+from . import eye, patience
 from .finds import Find
 
 # How far the hand may be from the pointer's path: what it is lifted by over a cusp.
 HAND_OFF_PATH_MM = 2.5
+# On its way, the pedal up, it may be anywhere (docs/pointer.md, 8); for longer than this the picture says why.
+AWAY_UNTOLD_S = 5.0
 FORCE_OVER_LOAD, FORCE_SLACK_N = 1.1, 0.05
+# What is over for no longer than a few milliseconds nobody feels; so much is too much at any time.
+FORCE_PEAK = 2.0
 SECONDS_BETWEEN_NOTICES = 60.0
 # Answers to what the person just asked for, each time anew.
 ANSWERS = {"nothing-to-undo", "nothing-to-redo", "nothing-to-reset", "not-while-cutting", "saved", "refused", "bur-locked",
@@ -30,45 +34,61 @@ def live(hand):
     return hand.get("mode") == "live" and not hand.get("busy") and "camera" in hand
 
 
+def works(hand):
+    """It cuts, or bears on something: a pedal that was latched is down on the way, too."""
+    return (hand.get("pedal", 0.0) > 0.0 and not hand.get("latched")) or any(hand["forceN"])
+
+
 class HandNearPointer:
-    """While the button is down the hand is near a line of sight through where the pointer was."""
+    """While the button is down a hand that works is near a line of sight through where the pointer was; one that is
+    not comes there, or the picture says why it does not."""
     name = "hand-near-pointer"
 
     def __init__(self):
-        self.far = 0
+        self.far, self.away_since = 0, None
 
     def see(self, told, doing):
         hand = told.get("hand", {})
         if not (live(hand) and hand.get("pressed") and doing.pixels) or hand["clockS"] < doing.since_s + 1.0:
-            self.far = 0
+            self.far, self.away_since = 0, None
             return None
         off = eye.off_path_mm(hand["handMm"], hand, doing.pixels)
-        self.far = self.far + 1 if off > HAND_OFF_PATH_MM else 0
-        if self.far != 2:
-            return None
-        return Find(self.name, f"the hand is {off:.1f} mm from where the pointer was, {HAND_OFF_PATH_MM} at most are allowed",
-                    {"off_mm": round(off, 2)})
+        is_far = off > HAND_OFF_PATH_MM
+        self.far = self.far + 1 if is_far and works(hand) else 0
+        if self.far == 2:
+            return Find(self.name, f"the hand is {off:.1f} mm from where the pointer was, {HAND_OFF_PATH_MM} at most are allowed",
+                        {"off_mm": round(off, 2)})
+        if not is_far or works(hand) or hand.get("hint"):
+            self.away_since = None
+        elif self.away_since is None:
+            self.away_since = hand["clockS"]
+        elif hand["clockS"] - self.away_since > AWAY_UNTOLD_S * patience.times():
+            self.away_since = float("inf")  # told once
+            return Find(self.name, f"the hand stays {off:.1f} mm from where the pointer was, and nothing says why",
+                        {"off_mm": round(off, 2)})
+        return None
 
 
 class ForceWithinLoad:
-    """The mouse's hand presses with no more than what is set."""
+    """The mouse's hand presses with no more than what is set; a map may meet a peak of a millisecond, two do not."""
     name = "force-within-load"
 
     def __init__(self):
-        self.since = None
+        self.over, self.is_told = 0, False
 
     def see(self, told, doing):
         hand = told.get("hand", {})
         if not (live(hand) and hand.get("pressed") and "loadN" in hand):
-            self.since = None
+            self.over, self.is_told = 0, False
             return None
         force = math.sqrt(sum(n * n for n in hand["forceN"]))
         if force <= FORCE_OVER_LOAD * hand["loadN"] + FORCE_SLACK_N:
-            self.since = None
+            self.over, self.is_told = 0, False
             return None
-        if self.since is not None:
+        self.over += 1
+        if self.is_told or (self.over < 2 and force <= FORCE_PEAK * hand["loadN"] + FORCE_SLACK_N):
             return None
-        self.since = hand["clockS"]
+        self.is_told = True
         return Find(self.name, f"{force:.2f} N on the instrument where {hand['loadN']:.1f} N is set",
                     {"force_n": round(force, 3), "over": round(force / hand["loadN"], 3)})
 

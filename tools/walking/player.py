@@ -62,9 +62,10 @@ class Player:
         return hand.get("mode") == "live" and not hand.get("busy") and "camera" in hand and hand.get("tick", 0) > 0
 
     def at_rest(self, seconds=RESTS_S):
-        """Until nothing changes in the tooth; False where that does not come."""
+        """Until nothing changes in the tooth; False where that does not come, in a replay at once."""
         now = time.monotonic()
-        return self.wait(lambda: self.hand().get("clockS", 0.0) > now and "stateHash" in self.hand(), seconds)
+        self.wait(lambda: self.hand().get("clockS", 0.0) > now and ("stateHash" in self.hand() or self.hand()["mode"] != "live"), seconds)
+        return "stateHash" in self.hand()
 
     def opened(self):
         return self.wait(self.is_open, OPENS_S)
@@ -78,6 +79,10 @@ class Player:
             self.desk.click("welcomeClose")
         self.look()
         return True
+
+    def moment(self, hand):
+        """Of its recording, for a find's `moments`."""
+        return [self.watch.sitting(hand["recording"]), hand["timeS"]]
 
     # The steps.
 
@@ -169,7 +174,9 @@ class Player:
         if step.get("back"):
             pixels += pixels[::-1][1:]
         began = time.monotonic()
-        self.doing.pixels, self.doing.since_s = [(float(x), float(y)) for x, y in pixels], began
+        # Slowly (Shift) the hand goes a part of the pointer's way, from where it is.
+        under = [] if "shift" in step.get("keys", []) else pixels
+        self.doing.pixels, self.doing.since_s = [(float(x), float(y)) for x, y in under], began
         self.run_path(pixels, step["seconds"], press=1, held=step.get("held", 0.3), keys=step.get("keys", []))
         ended = time.monotonic()
         self.doing.pixels = []
@@ -187,10 +194,10 @@ class Player:
                 or hand.get("compare") or hand["camera"].get("mirrored") or "shift" in step.get("keys", [])):
             return
         shift = min(shifts)
-        sitting = self.watch.sittings.get(hand["recording"], (0, 0))[1]
-        self.log.append({"step": self.doing.step, "sitting": sitting, "recording": hand["recording"], "hand": {k: hand[k] for k in ("camera", "viewport")},
+        self.log.append({"step": self.doing.step, "sitting": self.watch.sitting(hand["recording"]), "recording": hand["recording"],
+                         "hand": {k: hand[k] for k in ("camera", "viewport")},
                          "pixels": pixels, "from_s": began + 0.25 - shift, "to_s": ended - 0.1 - shift, "load_n": hand["loadN"],
-                         "stop_mm": hand.get("stopMm"), "bur": hand["bur"], "tooth_mm": hand["toothMm"]})
+                         "latched": hand.get("latched", False), "stop_mm": hand.get("stopMm"), "bur": hand["bur"], "tooth_mm": hand["toothMm"]})
 
     def do_undo(self, step):
         self.at_rest()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 """That undo and redo give back the tooth bit for bit: the state's hash at each depth of the undo list, as the maps tell
-it at rest."""
+it at rest. Each find tells the two moments, for recorded.py, which knows better."""
 from .finds import Find
 
 
@@ -32,11 +32,10 @@ class UndoGivesBack:
         elif before is not None and depth > before and not hand["removedMm3"] and not hand["removedOthersMm3"]:
             self.hashes.clear()  # a reset, which is a step like a stroke, or its redo
         known = self.hashes.get(depth)
+        if known is not None and known[0] == hand["stateHash"]:
+            return None
+        self.hashes[depth] = hand["stateHash"], hand.get("timeS", 0.0)
         if known is None:
-            self.hashes[depth] = hand["stateHash"]
             return None
-        if known == hand["stateHash"]:
-            return None
-        self.hashes[depth] = hand["stateHash"]
         return Find(self.name, f"with {depth} steps to undo and {undone} to redo the tooth is another than before",
-                    {"depth": depth})
+                    {"depth": depth}, moments=[hand.get("recording"), known[1], hand.get("timeS", 0.0)])

@@ -122,6 +122,7 @@ class Walk:
         if self.options.module is None:
             return
         from . import recorded
+        self.finds = [find for find in self.finds if not self.is_belied(find, recorded)]
         for recording in sorted(self.player.recordings) if self.player else []:
             presses = [press for press in self.player.log if press["recording"] == recording]
             if not presses or not pathlib.Path(recording).is_file():
@@ -134,6 +135,15 @@ class Walk:
                     same[0].numbers = dict(find.numbers, **({"picture": picture} if picture else {}))
                 else:
                     self.finds.append(find)
+
+    def is_belied(self, find, recorded):
+        """The window spoke of another tooth, and the recording has the same."""
+        if not find.moments or not pathlib.Path(find.moments[0]).is_file():
+            return False
+        same = recorded.same_tooth(*find.moments, self.options.module)
+        if same:
+            self.tell(f"  not so by the recording: {find}")
+        return same
 
     def keep(self, folder):
         """Recordings and the window's files, for who looks into it."""

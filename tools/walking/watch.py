@@ -88,6 +88,9 @@ class Watch:
                 finds.append(self._at(find))
         return finds
 
+    def sitting(self, recording):
+        return self.sittings.get(recording, (0, 0))[1]
+
     def _count(self, hand):
         """A recording that goes on (after a replay, a crash) has a loop that counts from nought again."""
         if hand.get("mode") == "live" and hand.get("recording"):
@@ -96,4 +99,7 @@ class Watch:
 
     def _at(self, find):
         find.step = self.doing.step
+        if find.moments:
+            recording, then, now = find.moments
+            find.moments = [recording, *([self.sitting(recording), at] for at in (then, now))]
         return find

@@ -36,7 +36,8 @@ class Translated:
             return None  # Qt's own, in the desktop's language; with the names of files
         texts = dict(told.get("texts", {}))
         for place in told.get("places", {}):
-            if "/" in place:
+            # A button's place tells what it is for, not what it says.
+            if "/" in place and not place.startswith("button/"):
                 texts[place] = place.split("/", 1)[1]
         for widget, text in texts.items():
             if (widget, text) in self.seen or widget in self.OWN:

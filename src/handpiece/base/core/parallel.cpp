@@ -29,8 +29,12 @@ void parallelFor(std::size_t count, std::size_t grain, const std::function<void(
     body(0, count / 2);
     other.join();
 #else
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
-                      [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); });
+    // Isolated: else one that is called within another ends early and without a word when a body of the other throws,
+    // and who called it goes on with what is half done.
+    tbb::task_group_context own(tbb::task_group_context::isolated);
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, grain == 0 ? 1 : grain),
+        [&](const tbb::blocked_range<std::size_t>& r) { body(r.begin(), r.end()); }, own);
 #endif
 }
 

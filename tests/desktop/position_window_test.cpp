@@ -103,11 +103,9 @@ TEST_F(PositionTest, ByMirrorThePictureIsTurnedOverAndTheHandIsNot) {
 TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
     openPanel();
     click(11);
-    QCoreApplication::processEvents();  // what one turn changes is told once
     action("actionMirrorView")->trigger();
     ASSERT_TRUE(waitFor([this] { return simulator().sample().timeS > 0.3; }));
     action("actionMirrorView")->trigger();
-    QCoreApplication::processEvents();
     part<QCheckBox>("depthStopOn")->click();
     ASSERT_TRUE(waitFor([this] { return simulator().status().recording.writtenRecords > 0; }));
     const auto way = [](int hour, bool mirror, bool stop) {

@@ -433,13 +433,8 @@ void Simulator::setHullMethod(bool hull) {
 
 void Simulator::noteWorkingWay(int hour, bool mirrorOnly, bool fingerRest) {
     way_ = {hour, mirrorOnly, fingerRest, way_.depthStop, way_.perPassMm};
-    // Once for all that one click or one opened tooth changes of it.
-    if (isWayToTell_) return;
-    isWayToTell_ = true;
-    QTimer::singleShot(0, this, [this] {
-        isWayToTell_ = false;
-        if (mode_ == Mode::liveSession && liveSession_) liveSession_->noteWorkingWay(way_);
-    });
+    if (mode_ != Mode::liveSession || !liveSession_) return;
+    liveSession_->noteWorkingWay(way_);
 }
 
 void Simulator::noteHand(bool isStopOn, std::optional<double> perPassMm) {

@@ -124,6 +124,8 @@ void MeasureFeature::connectTools() {
         const double mm = settings_.number(QStringLiteral("work/perPassMm"), 0.0, 0.0, input::kMaxPerPassMm);
         box_->passRow()->setDepth(mm > 0.0 ? std::optional(mm) : std::nullopt);
     }
+    // The first record begins with it.
+    simulator_.noteHand(box_->depthStopMm().has_value(), box_->passRow()->depthMm());
     const auto keepStop = [this](double stopMm) {
         // What an exercise withholds is off there, and as it was afterwards.
         if (!simulator_.permissions().allows(Operation::depthStop)) return;
@@ -230,9 +232,11 @@ void MeasureFeature::showDocument() {
         probedDepthMm_.reset();
         probedLeftMm_.reset();
         // The hand that holds this tooth's bur presses and stops as the panel says.
+        isFittingHand_ = true;
         view_.setLoad(box_->loadN());
         view_.setStop(box_->depthStopMm());
         view_.setPerPass(box_->passRow()->depthMm());
+        isFittingHand_ = false;
         noteHand();
         readouts_.start();
     }
@@ -240,6 +244,7 @@ void MeasureFeature::showDocument() {
 
 /// What holds the mouse's hand back; an arm has none of it.
 void MeasureFeature::noteHand() {
+    if (isFittingHand_) return;
     const input::PointerController* const hand = view_.hand();
     simulator_.noteHand(hand && hand->stopMm(), hand ? hand->perPassMm() : std::nullopt);
 }

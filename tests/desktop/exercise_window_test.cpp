@@ -144,7 +144,8 @@ TEST_F(ExerciseTest, ForWorkByMirrorShowsNothingElseAndEachRecordingSaysSo) {
         const auto way =
             std::find_if(events.begin(), events.end(), [](const auto& e) { return e.name == "working way"; });
         ASSERT_NE(way, events.end()) << recording;
-        EXPECT_LT(way->tick, 200u);
+        // As soon as the picture stands: on a busy machine that takes some hundred ticks.
+        EXPECT_LT(way->tick, 2000u);
         EXPECT_NE(way->text.find(R"("mirror_only": true)"), std::string::npos) << way->text;
     }
 }

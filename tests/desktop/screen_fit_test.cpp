@@ -166,8 +166,9 @@ void ScreenFitTest::expectAllFit(const char* language) {
     expectFits(window());
     finish();
     expectFits(result());
-    expectButtons(result(), {"judgeShow"});
-    click("judgeShow");
+    // Where one's own judgement is asked for first.
+    if (part<QPushButton>("judgeShow")->isVisible()) click("judgeShow");
+    ASSERT_TRUE(waitFor([this] { return part<QPushButton>("resultAgain")->isVisible(); }));
     expectFits(result());
     expectButtons(result(), {"resultPage", "resultHandIn", "resultAgain", "resultNext"});
     result().close();

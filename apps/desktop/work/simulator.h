@@ -356,7 +356,7 @@ class Simulator : public QObject {
     simulation::SimulationSettings settings_;
     QString burName_ = QStringLiteral("330"), driveName_ = QStringLiteral("turbine"), code_;
     simulation::WorkingWay way_{0, false, false, false};  ///< as told last
-    std::string sessionCode_;  ///< that the recording carries, or the next one will
+    std::string sessionCode_;                             ///< that the recording carries, or the next one will
     QString chosenDrive_ = driveName_;
     double speedRpm_ = 0.0, chosenRpm_ = 0.0, elapsedS_ = 0.0;
     bool hull_ = false, isTimeTold_ = false;

@@ -38,7 +38,7 @@ class MeasureFeature : public Feature {
     VolumeBars* volumes_;
     PlotPanel* plots_;
     QTimer readouts_;
-    bool isFittingHand_ = false;  ///< to the panel: a new hand's own values are nobody's wish
+    bool isFittingHand_ = false;                          ///< to the panel: a new hand's own values are nobody's wish
     std::optional<double> probedDepthMm_, probedLeftMm_;  ///< by a click, until one cuts on
 };
 

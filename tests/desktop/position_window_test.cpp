@@ -7,7 +7,6 @@
 
 #include "desktop/features/position/position_panel.h"
 #include "handpiece/app/input/working_position.h"
-#include "handpiece/app/simulation/working_way.h"
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
@@ -108,11 +107,12 @@ TEST_F(PositionTest, TheRecordSaysFromWhereAndHow) {
     action("actionMirrorView")->trigger();
     part<QCheckBox>("depthStopOn")->click();
     ASSERT_TRUE(waitFor([this] { return simulator().status().recording.writtenRecords > 0; }));
-    const auto way = [](int hour, bool mirror, bool stop) {
-        return simulation::workingWayJson({hour, mirror, false, stop, 0.3});
-    };
-    const std::vector<std::string> expected{way(0, false, true), way(11, false, true), way(11, true, true),
-                                            way(11, false, true), way(11, false, false)};
+    const std::vector<std::string> expected{
+        R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": true, "depth_per_pass_mm": 0.3})",
+        R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": true, "depth_per_pass_mm": 0.3})",
+        R"({"position": 11, "mirror_only": true, "finger_rest": false, "depth_stop": true, "depth_per_pass_mm": 0.3})",
+        R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": true, "depth_per_pass_mm": 0.3})",
+        R"({"position": 11, "mirror_only": false, "finger_rest": false, "depth_stop": false, "depth_per_pass_mm": 0.3})"};
     std::vector<std::string> told;
     EXPECT_TRUE(waitFor([&] {
         QTest::qWait(300);  // it is written by and by, and stays readable
@@ -143,7 +143,8 @@ TEST_F(PositionTest, ARecordingThatGoesOnAfterAReplayDoesNotCountWhatWasBefore) 
         const session::SessionReader reader(recording);
         for (const session::Event& event : reader.events())
             if (event.name == "working way") last = event.text;
-        return last == simulation::workingWayJson({0, false, false, true, 0.3});
+        return last ==
+               R"({"position": 0, "mirror_only": false, "finger_rest": false, "depth_stop": true, "depth_per_pass_mm": 0.3})";
     }));
 }
 

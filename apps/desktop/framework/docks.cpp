@@ -12,6 +12,12 @@ namespace {
 
 constexpr int kMostOfWidth = 32, kLowScreen = 600, kLeastHeight = 24;
 
+/// At least as wide as it wants to be, unless that is more than `most`: then it scrolls.
+void needsWidth(QScrollArea& scroll, int wanted, int most) {
+    scroll.setMinimumWidth(std::min(wanted, most));
+    if (wanted > most) scroll.setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+}
+
 }  // namespace
 
 QDockWidget* Docks::addWidget(DockRow row, QWidget* panel) {
@@ -22,9 +28,7 @@ QDockWidget* Docks::addWidget(DockRow row, QWidget* panel) {
     scroll->setWidget(panel);
     // On a small screen the picture keeps its share, and what a panel has no room for scrolls.
     const QSize room = window_->screen()->availableSize();
-    const int wanted = panel->minimumSizeHint().width() + 4, most = room.width() * kMostOfWidth / 100;
-    scroll->setMinimumWidth(std::min(wanted, most));
-    if (wanted > most) scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
+    needsWidth(*scroll, panel->minimumSizeHint().width() + 4, room.width() * kMostOfWidth / 100);
     if (room.height() < kLowScreen) scroll->setMinimumHeight(kLeastHeight);
     auto* dock = new QDockWidget(row.title, window_);
     dock->setObjectName(QLatin1String(row.name));
@@ -80,10 +84,7 @@ void Docks::arrange(Detail detail) {
             below << dock;
             // Those in one row share the width that the picture has.
             auto* scroll = static_cast<QScrollArea*>(dock->widget());
-            if (const int most = window_->screen()->availableSize().width() / 6; scroll->minimumWidth() > most) {
-                scroll->setMinimumWidth(most);
-                scroll->setHorizontalScrollBarPolicy(Qt::ScrollBarAsNeeded);
-            }
+            needsWidth(*scroll, scroll->minimumWidth(), window_->screen()->availableSize().width() / 6);
             widths << place.width;
         }
         dock->show();

@@ -135,6 +135,7 @@ TEST(MouthCourse, aRecordingHasThePathAndTheTimeOfTheScript) {
         // Of each turn a ruler of 0.2 mm may lose half of itself.
         EXPECT_NEAR(*told[0].value, f.drawnMm, (isFissure ? 0.03 : 0.05) * f.drawnMm);
         EXPECT_NEAR(*told[2].value, lastsS, 0.03 * lastsS);
+        EXPECT_NEAR(downS, way.releaseS - way.pressS, 0.03 * (way.releaseS - way.pressS));
     }
 }
 

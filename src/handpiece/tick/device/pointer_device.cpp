@@ -31,13 +31,14 @@ constexpr double kTipGain = 20.0, kTipS = 0.025, kSettleS = 0.4;
 constexpr double kMaxShare = 0.8;  // of an error, in one tick
 // In a fissure and over a ridge the tip goes farther than the hand: its spring is softer by as much, and for so long.
 constexpr double kSteepS = 0.2, kLatelyS = 0.01, kLeastSwingMm = 2e-3, kSofter = 4.0, kSteepest = 12.0;
-// What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
 // The load falls to none on the last of the way, some hundredths of a millimetre, or a stroke would end far above it.
 constexpr double kEndStiffer = 4.0;
 constexpr double kLeastTravelMmS = 75.0, kTravelMmSPerN = 150.0, kMetMmSPerN = 20.0;
 constexpr double kTissueDampingNSPerMm = 0.002;  // of teeth (data/tissues.toml)
+// What bears too much goes so much sooner than what is missing comes; a larger share of it in one tick would swing.
 constexpr double kGiveGain = 4.0, kGiveShare = 0.5;
 constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
+// What a tick's step may add to the force, as a share of the load: it is known only in the next tick.
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;

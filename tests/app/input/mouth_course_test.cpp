@@ -86,7 +86,7 @@ TEST(MouthCourse, alongAFissureTheDepthIsEven) {
         const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
         std::printf("  %s: %.3f to %.3f mm deep, %.3f mm3, bore %.2f N\n", way.name.c_str(), *least, *most,
                     f.removedMm3, f.mostN);
-        EXPECT_LT(*most - *least, pxPerS < 100.0 ? 0.15 : 0.25) << pxPerS;
+        EXPECT_LT(*most - *least, 0.15) << pxPerS;
         EXPECT_LT(*most, kFirstPerPassMm + 0.05);
         EXPECT_LT(f.outsideMm3, 0.001);
     }

@@ -42,6 +42,9 @@ constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
+// A stroke of that speed goes so deep, or it would be the deeper the longer it lasts: what 1 N cuts of enamel while it
+// passes [judgement]. Its speed is the mean of so long; a shorter stroke than that has no second pass.
+constexpr double kPaintMm2SPerN = 0.5, kSpeedS = 0.1, kLeastStrokeMm = 0.3;
 
 /// What the hand is asked to do, once it has been found to make sense.
 struct Wish {
@@ -113,7 +116,9 @@ struct PointerDevice::State {
     Vec3 wasTipMm = Vec3::Zero(), steppedMm = Vec3::Zero();  // the tip before, and the hand's step since
     Vec3 tipWentMm = Vec3::Zero();  // of late, across the way: as it went, all of it, and the hand's
     double tipWayMm = 0.0, handWayMm = 0.0, steep = 1.0;
-    double farMm = 0.0;             // along the way, of the place that it wanted without a load
+    Vec3 strokeFromMm = Vec3::Zero();                // across the way, where it began
+    double strokeMm = 0.0, pathMm = 0.0, mmS = 0.0;  // how far from there, its path, how fast it goes
+    double farMm = 0.0;                              // along the way, of the place that it wanted without a load
     Vec3 settledMm = Vec3::Zero();  // by which the hand stays beside a tip that is in its place, on a slope
     Vec3 liftedMm = Vec3::Zero();   // where an away hand goes
     Vec3 wantedMm = Vec3::Zero(), wantedMmS = Vec3::Zero();      // where the hand wants to be
@@ -128,6 +133,7 @@ struct PointerDevice::State {
     void follow(const Vec3& place, bool still, double h) noexcept;
     void move(double h) noexcept;
     void press(const Vec3& wasWantedMm, double periodS) noexcept;
+    [[nodiscard]] double paintsToMm(const Vec3& moved, double periodS) noexcept;
 };
 
 PointerDevice::PointerDevice(PointerHandSettings settings, std::shared_ptr<PointerMailbox> mailbox,
@@ -223,6 +229,8 @@ void PointerDevice::State::begin(bool pressing) noexcept {
         tipWentMm.setZero();
         tipWayMm = handWayMm = 0.0;
         steep = 1.0;
+        strokeFromMm = wantedMm;
+        strokeMm = pathMm = mmS = 0.0;
     }
     if (!pressing && wasPressing) {
         wantedMm = positionMm;
@@ -293,6 +301,18 @@ void PointerDevice::State::move(double h) noexcept {
     positionMm += h * velocityMmS;
 }
 
+/// Along the way, as deep as a stroke goes at its speed, and each time again that it passes.
+double PointerDevice::State::paintsToMm(const Vec3& moved, double periodS) noexcept {
+    const auto across = [&](const Vec3& v) { return Vec3(v - wish.way * wish.way.dot(v)); };
+    const double went = across(moved).norm();
+    mmS += (went / periodS - mmS) * (1.0 - core::exp(-periodS / kSpeedS));
+    pathMm += went;
+    strokeMm = std::max(strokeMm, across(wantedMm - strokeFromMm).norm());
+    const double passes = std::max(1.0, pathMm / std::max(strokeMm, kLeastStrokeMm));
+    const double deepMm = passes * kPaintMm2SPerN * wish.loadN / std::max(mmS, 1e-3);
+    return std::min(wish.farMm, wish.passMm + deepMm);
+}
+
 void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexcept {
     // Shares of what is left, so that no period is too long: of the way to a place, of a force that is missing.
     const double k = capability.maxStiffnessNPerMm, b = settings.dampingNSPerMm;
@@ -307,7 +327,8 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const Vec3 left = wantedMm - tipMm, moved = wantedMm - wasWantedMm, beside = across(left);
     // Left behind it comes up, as far as the surface was when the stroke began: no wall holds it there.
     const double up = wish.isLed ? 0.0 : std::clamp((beside.norm() - kBehindMm) / kUpMm, 0.0, 1.0);
-    const double endMm = wish.farMm + up * (std::min(wish.passMm - kOverMm, wish.farMm) - wish.farMm);
+    const double deepMm = wish.isLed ? wish.farMm : paintsToMm(moved, periodS);
+    const double endMm = deepMm + up * (std::min(wish.passMm - kOverMm, deepMm) - deepMm);
     // What meets it at that speed, spring and damper, adds no more to the load than a step may.
     const double meets = kStepShare * wish.loadN / (k * std::min(periodS, kUsualPeriodS) + kTissueDampingNSPerMm);
     const double most = std::min(settings.approachMmS, meets) * periodS, ahead = left.dot(way) + endMm,

@@ -51,11 +51,12 @@ Run sit(const tasks::Task& task, const preparation::Laid& laid, const simulation
     simulation::LiveSession session(station, task.toothCase, std::move(hand), {}, tooth);
     std::atomic<bool> isOver{false};
     Run run;
+    const zones::WholeVolumes whole = zones::wholeVolumes(*laid.zones, *station.tooth);
     std::thread counter([&] {
         rt::stepBack();
         while (counts && !isOver) {
             const double begun = threadMs();
-            run.removedMm3 = course::liveShares(*laid.zones, *tooth).targetRemoved;
+            run.removedMm3 = course::liveShares(*laid.zones, whole, *tooth).targetRemoved;
             run.countMs += threadMs() - begun;
             ++run.counts;
             std::this_thread::sleep_for(std::chrono::milliseconds(400));

@@ -143,7 +143,7 @@ void HandMap::addHash(QJsonObject& told) {
     const Place place{isAtRest ? sample.handedBricks : 0, status.undoSteps, status.redoSteps, work.tooth().get()};
     if (isAtRest && place == seen_) {
         if (place != hashed_ || hash_.empty()) {
-            hash_ = fmt::format("{:016x}", tooth::stateHash(work.tooth()->state({})));
+            hash_ = fmt::format("{:016x}", tooth::stateHash(work.state()));
             hashed_ = place;
         }
         told.insert("stateHash", QString::fromStdString(hash_));

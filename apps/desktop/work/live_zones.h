@@ -42,7 +42,7 @@ class LiveZones : public QObject {
     void count();
     void value();
     /// `work` beside everything else, then `done` here.
-    void run(std::function<void(Watched&)> work, std::function<void()> done);
+    void run(std::function<void(Watched&, const core::Progress&)> work, std::function<void()> done);
 
     std::shared_ptr<Watched> watched_;
     double removedMm3_ = 0.0, countedMm3_ = -1.0;

@@ -23,13 +23,13 @@ void PacedCount::stop() {
     if (job_) job_.release()->abandon(this);
 }
 
-void PacedCount::run(std::function<void()> work, std::function<void()> done) {
+void PacedCount::run(std::function<void(const core::Progress&)> work, std::function<void()> done) {
     const auto tookMs = std::make_shared<qint64>(0);
-    job_ = std::make_unique<Job>(QString(), [work = std::move(work), tookMs](const core::Progress&) {
+    job_ = std::make_unique<Job>(QString(), [work = std::move(work), tookMs](const core::Progress& progress) {
         rt::stepBack();
         QElapsedTimer clock;
         clock.start();
-        work();
+        work(progress);
         *tookMs = clock.elapsed();
     });
     const auto end = [this] { job_.release()->deleteLater(); };

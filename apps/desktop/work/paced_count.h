@@ -21,8 +21,9 @@ class PacedCount : public QObject {
     /// What is under way is given up: nobody hears of it.
     void stop();
     [[nodiscard]] bool isBusy() const noexcept { return job_ != nullptr; }
-    /// `work` off the window's thread, then `done` on it. What fails stops it: there is nothing to count.
-    void run(std::function<void()> work, std::function<void()> done);
+    /// `work` off the window's thread, then `done` on it. What fails stops it: there is nothing to count. `work` asks
+    /// the progress between its steps, or the program ends only after all of them.
+    void run(std::function<void(const core::Progress&)> work, std::function<void()> done);
 
   signals:
     void due();

@@ -66,6 +66,8 @@ class Simulator : public QObject {
     /// Null while nothing is open.
     [[nodiscard]] const std::shared_ptr<const cases::Case>& toothCase() const noexcept { return toothCase_; }
     [[nodiscard]] const std::shared_ptr<simulation::LiveTooth>& tooth() const noexcept { return tooth_; }
+    /// As it is cut by now, where tooth() may be a picture behind; with a tooth open.
+    [[nodiscard]] tooth::StateDelta state() const;
     /// For the picture, made with each sitting; null in a replay.
     [[nodiscard]] const std::shared_ptr<simulation::SampleFeed>& pictureFeed() const noexcept { return pictureFeed_; }
     /// Null in a replay, and while a device holds the handpiece: the mouse looks and measures then.

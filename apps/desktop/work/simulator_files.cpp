@@ -392,20 +392,9 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
         });
 }
 
-namespace {
-
-/// The tooth as it is on the way to a file.
-using Export = std::function<void(const std::shared_ptr<const tooth::ToothModel>& base, const tooth::StateDelta& state,
-                                  const core::Progress& progress)>;
-
-Job::Work exporting(const std::shared_ptr<simulation::LiveTooth>& tooth, const messages::HapticSample& sample,
-                    Export to) {
-    return [tooth, removedMm3 = sample.removedMm3, to = std::move(to)](const core::Progress& progress) {
-        to(tooth->modelShared(), tooth->state({removedMm3, {}}), progress);
-    };
+tooth::StateDelta Simulator::state() const {
+    return liveSession_ ? liveSession_->state() : tooth_->state({sample_.removedMm3, {}});
 }
-
-}  // namespace
 
 void Simulator::exportStl(const fs::path& path) {
     if (job_ || !may(exercise::Operation::elsewhere)) return;
@@ -413,12 +402,12 @@ void Simulator::exportStl(const fs::path& path) {
         emit failed(problemById(QStringLiteral("nothing-open")));
         return;
     }
-    start(tr("Writing the STL file"),
-          exporting(tooth_, sample_,
-                    [path](const auto& base, const auto& state, const auto& progress) {
-                        simulation::exportStl(base, state, path, progress);
-                    }),
-          [this, path] { emit saved(toQString(path)); });
+    start(
+        tr("Writing the STL file"),
+        [path, base = tooth_->modelShared(), state = state()](const core::Progress& progress) {
+            simulation::exportStl(base, state, path, progress);
+        },
+        [this, path] { emit saved(toQString(path)); });
 }
 
 void Simulator::exportTissues(const fs::path& folder) {
@@ -428,13 +417,13 @@ void Simulator::exportTissues(const fs::path& folder) {
         return;
     }
     const auto last = std::make_shared<fs::path>(folder);
-    start(tr("Writing the tissues"),
-          exporting(tooth_, sample_,
-                    [folder, last](const auto& base, const auto& state, const auto& progress) {
-                        const auto files = simulation::exportTissues(base, state, folder, progress);
-                        if (!files.empty()) *last = files.front();
-                    }),
-          [this, last] { emit saved(toQString(*last)); });
+    start(
+        tr("Writing the tissues"),
+        [folder, last, base = tooth_->modelShared(), state = state()](const core::Progress& progress) {
+            const auto files = simulation::exportTissues(base, state, folder, progress);
+            if (!files.empty()) *last = files.front();
+        },
+        [this, last] { emit saved(toQString(*last)); });
 }
 
 void Simulator::writeReport(const fs::path& file) {

@@ -55,10 +55,11 @@ void WorkGlass::make() {
     isSure_ = removedMm3_ == madeMm3_;
     madeMm3_ = removedMm3_;
     const auto made = std::make_shared<std::vector<view::GlassSurface>>();
-    const auto work = [made, watched = watched_] {
+    const auto work = [made, watched = watched_](const core::Progress& progress) {
         if (!watched->laid)
             watched->laid = std::make_shared<const preparation::Laid>(
                 preparation::layOn(watched->task->toothCase, *watched->task->preparation));
+        core::report(progress, 0.3);
         course::LiveGlass glass = course::liveGlass(*watched->laid, *watched->tooth);
         if (!glass.left.triangles.empty())
             made->push_back(

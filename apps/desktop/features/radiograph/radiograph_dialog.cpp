@@ -66,11 +66,13 @@ RadiographDialog::RadiographDialog(QWidget* parent)
 }
 
 void RadiographDialog::setTooth(std::shared_ptr<const cases::Case> toothCase,
-                                std::shared_ptr<const simulation::LiveTooth> live) {
+                                std::shared_ptr<const simulation::LiveTooth> live,
+                                std::function<tooth::StateDelta()> state) {
     if (toothCase == toothCase_ && live == live_) return;
     stop({});
     toothCase_ = std::move(toothCase);
     live_ = std::move(live);
+    state_ = std::move(state);
     tooth_->clear();
     if (toothCase_ != nullptr) {
         const auto add = [this](int fdi) {
@@ -93,13 +95,13 @@ void RadiographDialog::take() {
     const auto made = std::make_shared<std::optional<radiograph::Radiograph>>();
     job_ = new Job(
         tr("Taking the radiograph"),
-        [of = toothCase_, live = live_, settings, made](const core::Progress& p) {
+        [of = toothCase_, live = live_, state = live_ ? state_() : tooth::StateDelta{}, settings,
+         made](const core::Progress& p) {
             const core::Progress whole = core::part(p, 0.3, 1.0);
-            *made =
-                live == nullptr
-                    ? radiograph::take(*of, settings, whole)
-                    : radiograph::take(simulation::asCut(*of, live->teeth(), live->state({}), core::part(p, 0.0, 0.3)),
-                                       settings, whole);
+            *made = live == nullptr
+                        ? radiograph::take(*of, settings, whole)
+                        : radiograph::take(simulation::asCut(*of, live->teeth(), state, core::part(p, 0.0, 0.3)),
+                                           settings, whole);
         },
         this);
     connect(job_, &Job::progressed, this, [this](double share) { progress_->setValue(qRound(1000.0 * share)); });

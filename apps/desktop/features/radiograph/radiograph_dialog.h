@@ -4,6 +4,7 @@
 /// A radiograph of the tooth that is open, as it is cut: which view, the picture, where it is saved.
 
 #include <QDialog>
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -24,8 +25,10 @@ class RadiographDialog : public QDialog {
   public:
     explicit RadiographDialog(QWidget* parent);
 
-    /// Null: no tooth is open. Takes the picture while the dialog is shown. `live`: how the teeth are cut.
-    void setTooth(std::shared_ptr<const cases::Case> toothCase, std::shared_ptr<const simulation::LiveTooth> live);
+    /// Null: no tooth is open. Takes the picture while the dialog is shown. `live`: its teeth;
+    /// `state`: how they are cut, asked for each picture.
+    void setTooth(std::shared_ptr<const cases::Case> toothCase, std::shared_ptr<const simulation::LiveTooth> live,
+                  std::function<tooth::StateDelta()> state);
     /// What is shown; none while it is being taken.
     [[nodiscard]] const std::optional<radiograph::Radiograph>& taken() const noexcept { return taken_; }
 
@@ -44,6 +47,7 @@ class RadiographDialog : public QDialog {
 
     std::shared_ptr<const cases::Case> toothCase_;
     std::shared_ptr<const simulation::LiveTooth> live_;
+    std::function<tooth::StateDelta()> state_;
     std::optional<radiograph::Radiograph> taken_;
     Job* job_ = nullptr;  ///< under way
     QComboBox *view_, *tooth_;

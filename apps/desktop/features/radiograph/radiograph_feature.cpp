@@ -30,7 +30,7 @@ RadiographFeature::RadiographFeature(const FeatureContext& context)
 }
 
 void RadiographFeature::showDocument() {
-    dialog_->setTooth(simulator_.toothCase(), simulator_.tooth());
+    dialog_->setTooth(simulator_.toothCase(), simulator_.tooth(), [this] { return simulator_.state(); });
 }
 
 void RadiographFeature::save() {

@@ -14,8 +14,9 @@ struct LiveShares {
     double protectedMm3 = 0.0;                ///< gone of what is protected
 };
 
-/// Of the tooth worked on, as its listeners know it. Takes tens of milliseconds of this thread and of no other: for a
-/// thread that nobody waits for. The tick is not asked, nor held up.
-[[nodiscard]] LiveShares liveShares(const zones::Zones& zones, const simulation::LiveTooth& tooth);
+/// Of the tooth worked on, as its listeners know it; `whole` is zones::wholeVolumes() of it. Takes tens of milliseconds
+/// of this thread and of no other: for a thread that nobody waits for. The tick is not asked, nor held up.
+[[nodiscard]] LiveShares liveShares(const zones::Zones& zones, const zones::WholeVolumes& whole,
+                                    const simulation::LiveTooth& tooth);
 
 }  // namespace handpiece::course

@@ -226,6 +226,16 @@ const HeightMap& CutTooth::heights() {
     return *heights_;
 }
 
+const zones::RemovedVolumes& CutTooth::removedVolumes() {
+    if (!removedVolumes_) removedVolumes_ = zones::removedVolumes(*p_.zones, *p_.cut);
+    return *removedVolumes_;
+}
+
+const zones::WholeVolumes& CutTooth::wholeVolumes() {
+    if (!wholeVolumes_) wholeVolumes_ = zones::wholeVolumes(*p_.zones, whole());
+    return *wholeVolumes_;
+}
+
 Form CutTooth::form() {
     if (p_.form != Form::found) return p_.form;
     if (form_) return *form_;

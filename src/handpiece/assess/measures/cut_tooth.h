@@ -151,6 +151,9 @@ class CutTooth {
     /// Every 5 degrees, from mesial on.
     [[nodiscard]] const std::vector<AxialStation>& axialWalls();
     inline static constexpr int kAzimuths = 72;
+    /// By the task's zones, of which there are some.
+    [[nodiscard]] const zones::RemovedVolumes& removedVolumes();
+    [[nodiscard]] const zones::WholeVolumes& wholeVolumes();
 
   private:
     friend class Look;
@@ -175,6 +178,8 @@ class CutTooth {
     std::optional<std::vector<WallStation>> walls_;
     std::optional<std::vector<AxialStation>> axial_;
     std::optional<Form> form_;
+    std::optional<zones::RemovedVolumes> removedVolumes_;
+    std::optional<zones::WholeVolumes> wholeVolumes_;
 };
 
 }  // namespace handpiece::measures

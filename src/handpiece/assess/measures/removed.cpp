@@ -33,13 +33,12 @@ Amount amountOf(CutTooth& tooth, const Selection& of, bool withWhole) {
         const auto name = std::find(zones::kZoneNames.begin(), zones::kZoneNames.end(), of.zone);
         if (p.zones == nullptr || name == zones::kZoneNames.end())
             return {0.0, 0.0, "the task has no zone \"" + of.zone + "\""};
-        const zones::ZoneVolumes volumes = zones::zoneVolumes(*p.zones, *p.cut);
         const auto zone = static_cast<std::size_t>(name - zones::kZoneNames.begin());
-        amount.removed = sumOf(volumes.removed[zone]);
+        amount.removed = sumOf(tooth.removedVolumes()[zone]);
         if (!withWhole) return amount;
-        if (zone >= volumes.whole.size())
+        if (zone >= zones::WholeVolumes{}.size())
             return {0.0, 0.0, "only of target and leeway is it known how much there was: ask for mm3"};
-        amount.whole = sumOf(volumes.whole[zone]);
+        amount.whole = sumOf(tooth.wholeVolumes()[zone]);
         return amount;
     }
     if (p.removedMm3)

@@ -90,72 +90,107 @@ double ZoneVolumes::targetMm3() const {
     return tooth::sumOf(whole[static_cast<std::size_t>(Zone::target)]);
 }
 
-ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
+namespace {
+
+/// Calls f(dense brick, layer) for the bricks of a tooth that hold something, its layers in parallel.
+template <class F>
+void forBricksOf(const tooth::ToothModel& model, F&& f) {
+    const field::FieldView view = model.field.view();
+    const auto perLayer = static_cast<std::uint32_t>(view.bricks[0]) * static_cast<std::uint32_t>(view.bricks[1]);
+    core::parallelFor(static_cast<std::size_t>(view.bricks[2]), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t layer = begin; layer < end; ++layer)
+            for (std::uint32_t i = 0; i < perLayer; ++i) {
+                const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
+                if (view.brickIndex[dense] >= 0 || view.coarse[dense] < 0.0f) f(dense, layer);
+            }
+    });
+}
+
+/// The nodes that a brick's voxels belong to: f(place in the brick, tooth frame).
+template <class F>
+void forNodesOf(const field::FieldView& view, std::uint32_t dense, F&& f) {
+    for (int z = 0; z < field::kBrickCells; ++z)
+        for (int y = 0; y < field::kBrickCells; ++y)
+            for (int x = 0; x < field::kBrickCells; ++x)
+                f(static_cast<std::size_t>(x + field::kBrickNodes * (y + field::kBrickNodes * z)),
+                  nodeMm(view, dense, x, y, z));
+}
+
+template <std::size_t N>
+std::array<tooth::TissueVolumes, N> sumOf(const std::vector<std::array<tooth::TissueVolumes, N>>& layers) {
+    std::array<tooth::TissueVolumes, N> total{};
+    for (const auto& layer : layers)
+        for (std::size_t k = 0; k < N; ++k)
+            for (std::size_t t = 0; t < cases::kTissueCount; ++t)
+                total[k][t] += layer[k][t];
+    return total;
+}
+
+/// What of a voxel lies in the target, in all in and under it, in what may go, outside of what is kept, and in the
+/// tooth. Each holds those before it (target and what is under it both lie in what may go), so what lies between two of
+/// them is told right even where a surface runs along a border.
+std::array<double, 5> nested(double inside, const Zones::Distances& d, float inverseVoxel) {
+    const double free = std::max(inside, -d.kept);
+    const auto share = [&](double mm) {
+        return static_cast<double>(tooth::occupancy(static_cast<float>(mm), inverseVoxel));
+    };
+    return {share(std::max(free, d.target)), share(std::max({free, d.allowed, d.wall})),
+            share(std::max(free, d.allowed)), share(free), share(inside)};
+}
+
+}  // namespace
+
+WholeVolumes wholeVolumes(const Zones& zones, const tooth::ToothModel& model) {
+    const field::FieldView view = model.field.view();
+    const auto inverseVoxel = static_cast<float>(view.inverseVoxelMm);
+    const double voxelMm3 = view.voxelMm * view.voxelMm * view.voxelMm;
+    const double reachMm = view.voxelMm + std::max(zones.leeway().sideMm, zones.leeway().floorMm);
+    std::vector<WholeVolumes> layers(static_cast<std::size_t>(view.bricks[2]));
+    forBricksOf(model, [&](std::uint32_t dense, std::size_t layer) {
+        if (!isNear(view, dense, zones.box(), reachMm)) return;
+        std::array<float, field::kBrickValues> uncut;
+        model.uncutBrick(dense, uncut.data());
+        const std::uint8_t* tissues = model.field.storage().tissues->of(dense);
+        forNodesOf(view, dense, [&](std::size_t at, const Vec3& p) {
+            if (!(tooth::occupancy(uncut[at], inverseVoxel) > 0.0f)) return;
+            const auto [target, under, allowed, notKept, all] = nested(uncut[at], zones.distancesMm(p), inverseVoxel);
+            const std::array<double, 3> wholes = {target, allowed - under, under - target};
+            for (std::size_t k = 0; k < wholes.size(); ++k)
+                layers[layer][k][tissues[at]] += wholes[k] * voxelMm3;
+        });
+    });
+    return sumOf(layers);
+}
+
+RemovedVolumes removedVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
     const tooth::ToothModel& model = cut.model();
     const field::FieldView view = model.field.view();
     const auto inverseVoxel = static_cast<float>(view.inverseVoxelMm);
     const double voxelMm3 = view.voxelMm * view.voxelMm * view.voxelMm;
-    const auto perLayer = static_cast<std::uint32_t>(view.bricks[0]) * static_cast<std::uint32_t>(view.bricks[1]);
-    const double reachMm = view.voxelMm + std::max(zones.leeway().sideMm, zones.leeway().floorMm);
-    std::vector<ZoneVolumes> layers(static_cast<std::size_t>(view.bricks[2]));
-    core::parallelFor(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<RemovedVolumes> layers(static_cast<std::size_t>(view.bricks[2]));
+    forBricksOf(model, [&](std::uint32_t dense, std::size_t layer) {
+        if (!cut.isChanged(dense)) return;
         std::array<float, field::kBrickValues> uncut, scratch;
-        for (std::size_t layer = begin; layer < end; ++layer)
-            for (std::uint32_t i = 0; i < perLayer; ++i) {
-                const std::uint32_t dense = static_cast<std::uint32_t>(layer) * perLayer + i;
-                if (view.brickIndex[dense] < 0 && view.coarse[dense] >= 0.0f) continue;
-                const bool isChanged = cut.isChanged(dense);
-                if (!isChanged && !isNear(view, dense, zones.box(), reachMm)) continue;
-                model.uncutBrick(dense, uncut.data());
-                const float* now = isChanged ? cut.values(dense, scratch.data()) : uncut.data();
-                const std::uint8_t* tissues = model.field.storage().tissues->of(dense);
-                for (int z = 0; z < field::kBrickCells; ++z)
-                    for (int y = 0; y < field::kBrickCells; ++y)
-                        for (int x = 0; x < field::kBrickCells; ++x) {
-                            const int at = x + field::kBrickNodes * (y + field::kBrickNodes * z);
-                            const float before = tooth::occupancy(uncut[static_cast<std::size_t>(at)], inverseVoxel);
-                            if (before <= 0.0f) continue;
-                            const float gone = before - tooth::occupancy(now[at], inverseVoxel);
-                            const Vec3 p = nodeMm(view, dense, x, y, z);
-                            const double whole = uncut[static_cast<std::size_t>(at)];
-                            const auto share = [&](double distanceMm) {
-                                return static_cast<double>(
-                                    tooth::occupancy(static_cast<float>(distanceMm), inverseVoxel));
-                            };
-                            const Zones::Distances d = zones.distancesMm(p);
-                            // Each of these holds the one before, so what lies between two of them is told right even
-                            // where a surface runs along a border.
-                            const auto nested = [&](double inside) {
-                                const double free = std::max(inside, -d.kept);
-                                return std::array{share(std::max(free, d.target)),
-                                                  share(std::max({free, d.allowed, d.wall})),
-                                                  share(std::max(free, d.allowed)), share(free), share(inside)};
-                            };
-                            const auto [wholeTarget, wholeUnder, wholeAllowed, wholeFree, wholeAll] = nested(whole);
-                            const std::array<double, 3> wholes = {wholeTarget, wholeAllowed - wholeUnder,
-                                                                  wholeUnder - wholeTarget};
-                            for (std::size_t k = 0; k < wholes.size(); ++k)
-                                layers[layer].whole[k][tissues[at]] += wholes[k] * voxelMm3;
-                            if (!(gone > 0.0f)) continue;
-                            const auto [inTarget, underIt, allowed, notKept, all] =
-                                nested(std::max(whole, -static_cast<double>(now[at])));
-                            const std::array<double, kZoneCount> shares = {
-                                inTarget, allowed - underIt, underIt - inTarget, all - notKept, notKept - allowed};
-                            for (std::size_t k = 0; k < kZoneCount; ++k)
-                                layers[layer].removed[k][tissues[at]] +=
-                                    static_cast<double>(gone) * shares[k] / all * voxelMm3;
-                        }
-            }
-    });
-    ZoneVolumes total;
-    for (const ZoneVolumes& layer : layers)
-        for (std::size_t t = 0; t < cases::kTissueCount; ++t) {
+        model.uncutBrick(dense, uncut.data());
+        const float* now = cut.values(dense, scratch.data());
+        const std::uint8_t* tissues = model.field.storage().tissues->of(dense);
+        forNodesOf(view, dense, [&](std::size_t at, const Vec3& p) {
+            const float before = tooth::occupancy(uncut[at], inverseVoxel);
+            const float gone = before > 0.0f ? before - tooth::occupancy(now[at], inverseVoxel) : 0.0f;
+            if (!(gone > 0.0f)) return;
+            const double inside = std::max<double>(uncut[at], -now[at]);
+            const auto [target, under, allowed, notKept, all] = nested(inside, zones.distancesMm(p), inverseVoxel);
+            const std::array<double, kZoneCount> shares = {target, allowed - under, under - target, all - notKept,
+                                                           notKept - allowed};
             for (std::size_t k = 0; k < kZoneCount; ++k)
-                total.removed[k][t] += layer.removed[k][t];
-            for (std::size_t k = 0; k < total.whole.size(); ++k)
-                total.whole[k][t] += layer.whole[k][t];
-        }
-    return total;
+                layers[layer][k][tissues[at]] += static_cast<double>(gone) * shares[k] / all * voxelMm3;
+        });
+    });
+    return sumOf(layers);
+}
+
+ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut) {
+    return {removedVolumes(zones, cut), wholeVolumes(zones, cut.model())};
 }
 
 tooth::StateDelta idealState(const Zones& zones, std::shared_ptr<const tooth::ToothModel> whole) {

@@ -86,17 +86,22 @@ class Zones {
     geometry::ScalarFunction protected_;
 };
 
-/// By zone and tissue [mm3].
+/// By zone and tissue [mm3]: what has gone, which sums to what the field has lost, to rounding; what the uncut tooth
+/// has in the target, its side and its floor's leeway (of the others it is not summed).
+using RemovedVolumes = std::array<tooth::TissueVolumes, kZoneCount>;
+using WholeVolumes = std::array<tooth::TissueVolumes, 3>;
 struct ZoneVolumes {
-    std::array<tooth::TissueVolumes, kZoneCount> removed{};  ///< sums to what the field has lost, to rounding
-    /// That the uncut tooth has in the target, its side and its floor's leeway; of the others it is not summed.
-    std::array<tooth::TissueVolumes, 3> whole{};
+    RemovedVolumes removed{};
+    WholeVolumes whole{};
     [[nodiscard]] double removedMm3(Zone zone) const;
     [[nodiscard]] double targetMm3() const;
 };
 
-/// What `cut` has lost, by zone. A voxel through which both the cut and a zone's border pass is shared as the distance
-/// to both says; shares of a voxel sum to what it has lost. In parallel, the same bits at any thread count.
+/// A voxel through which both the cut and a zone's border pass is shared as the distance to both says; shares of a
+/// voxel sum to what it has lost. In parallel, the same bits at any thread count. What has gone takes as long as the
+/// cut is large, the whole tooth up to seconds: who counts again and again keeps it.
+[[nodiscard]] RemovedVolumes removedVolumes(const Zones& zones, const tooth::ToothMirror& cut);
+[[nodiscard]] WholeVolumes wholeVolumes(const Zones& zones, const tooth::ToothModel& model);
 [[nodiscard]] ZoneVolumes zoneVolumes(const Zones& zones, const tooth::ToothMirror& cut);
 
 /// The tooth with all of the target taken away that is not protected, and nothing else: how it should be. As attempts

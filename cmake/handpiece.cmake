@@ -73,6 +73,11 @@ endfunction()
 option(HANDPIECE_UNITY "Compile several sources at once (off: one file that changed is compiled sooner)" ON)
 set(CMAKE_UNITY_BUILD ${HANDPIECE_UNITY})
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+if(HANDPIECE_UNITY)
+    # The warning is meant for types in headers; GCC takes each source that a unity file includes for one.
+    target_compile_options(handpiece_options INTERFACE
+        $<BUILD_INTERFACE:$<$<COMPILE_LANG_AND_ID:CXX,GNU>:-Wno-subobject-linkage>>)
+endif()
 # Sources that call their own helpers as others in their folder do.
 function(handpiece_alone)
     set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

@@ -96,7 +96,7 @@ std::unique_ptr<device::Device> deviceOf(const RunSettings& settings, const devi
 
 RunSummary runLoop(const RunSettings& settings, const device::Motion& motion, std::unique_ptr<contact::Method> method,
                    const loop::Listener& listener) {
-    return runLoop(settings, motion, loop::Work(std::move(method)),
+    return runLoop(settings, motion, loop::Work{std::move(method), nullptr},
                    [&](loop::HapticLoop&, const messages::HapticSample& sample) { listener(sample); }, {});
 }
 

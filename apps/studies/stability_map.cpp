@@ -217,7 +217,7 @@ StabilityRow::Outcome simulate(const StabilitySweep& sweep, const StabilityRow& 
     loop::LoopSettings loopSettings;
     loopSettings.rateHz = row.rateHz;
     loopSettings.queueCapacity = 16;
-    loop::Work work = row.motion == LoopMotion::touch ? loop::Work(std::make_unique<PlaneMethod>(row.tissue))
+    loop::Work work = row.motion == LoopMotion::touch ? loop::Work{std::make_unique<PlaneMethod>(row.tissue), nullptr}
                                                       : molar->work(row.motion);
     loop::HapticLoop loop(loopSettings, std::move(shaped), std::move(work), parameters);
 

@@ -149,8 +149,19 @@ TEST_F(PracticeTest, AClickOnEvidenceTurnsTheEyeAndPlaysTheSeconds) {
     EXPECT_EQ(view()->camera().targetMm, *there.placeMm);
     EXPECT_GT(view()->camera().eyeMm.z(), 10.0) << "from where one sees into a block";
     ASSERT_TRUE(waitFor([&] { return simulator().sample().tick + 5 >= static_cast<std::uint64_t>(1e3 * endS); }));
+    // A section beside it, of a place on the tooth: its figures, and no second time for one inside it.
+    auto* section = window().findChild<QWidget*>(QStringLiteral("sectionCard"));
+    EXPECT_TRUE(section->isHidden()) << "the place lies in the block";
+    measures::Evidence onTop;
+    const core::Box box = simulator().tooth()->model().outer.bounds();
+    onTop.placeMm = core::Vec3(box.centre().x() + 5.0, box.centre().y() + 4.0, box.max.z());
+    emit result().evidenceChosen(onTop);
+    ASSERT_TRUE(waitFor([&] { return section->isVisible(); }));
+    EXPECT_FALSE(section->accessibleDescription().isEmpty());
+    EXPECT_LE(section->geometry().right(), view()->width());
     there.timeS = 0.5 * endS;
     emit result().evidenceChosen(there);
+    EXPECT_TRUE(section->isHidden()) << "of another place";
     bool wasPlaying = false;
     ASSERT_TRUE(waitFor([&] {
         const ReplayNow now = simulator().replay()->now();

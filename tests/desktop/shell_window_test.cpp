@@ -82,9 +82,10 @@ TEST_F(ShellTest, EveryCommandHasANameATooltipAKeyAndAPlaceInTheMenus) {
         keys.insert(action->shortcut().toString());
         // With the picture in focus its own keys come first: the command would never be heard.
         const QKeyCombination pressed = action->shortcut()[0];
-        if (pressed.keyboardModifiers() & Qt::ControlModifier)
+        if (pressed.keyboardModifiers() & Qt::ControlModifier) {
             EXPECT_FALSE(KeyBindings().actionFor({Binding::Kind::key, pressed.key(), pressed.keyboardModifiers()}))
                 << qPrintable(action->objectName());
+        }
         EXPECT_FALSE(names.contains(action->objectName()));
         names.insert(action->objectName());
     }
@@ -362,7 +363,9 @@ TEST_F(ShellTest, LoadAndStopOfThePanelHoldForTheToothThatComesBack) {
     view()->setLoad(1.7);
     view()->setStop(1.2);
     // Before the first tick there is nothing to replay, and the window says so.
-    if (simulator().sample().tick == 0) EXPECT_FALSE(action("actionReplay")->isEnabled());
+    if (simulator().sample().tick == 0) {
+        EXPECT_FALSE(action("actionReplay")->isEnabled());
+    }
     ASSERT_TRUE(waitFor([this] { return action("actionReplay")->isEnabled(); }));
     EXPECT_GT(simulator().sample().tick, 0u);
     action("actionReplay")->trigger();

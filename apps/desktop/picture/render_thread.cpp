@@ -121,9 +121,9 @@ struct RenderThread::Shared {
         }
         wake.notify_all();
     }
-    void hear(const messages::HapticSample& sample) {
-        if (!moved(sample, told) && !turns(sample) && !turns(told)) return;
-        told = sample;
+    void hear(const messages::HapticSample& heard) {
+        if (!moved(heard, told) && !turns(heard) && !turns(told)) return;
+        told = heard;
         poke();
     }
 };

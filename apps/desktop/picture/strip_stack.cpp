@@ -34,7 +34,7 @@ void StripStack::add(QWidget* strip, Where where) {
     strip->setCursor(Qt::ArrowCursor);
     strip->setVisible(shown);
     strip->installEventFilter(this);
-    (where == Where::above ? strips_ : below_) << strip;
+    (where == Where::above ? strips_ : where == Where::below ? below_ : corner_) << strip;
     place();
 }
 
@@ -46,7 +46,7 @@ void StripStack::setTop(int pixels) {
 
 std::vector<QRectF> StripStack::covered() const {
     std::vector<QRectF> places;
-    for (const QWidget* strip : strips_ + below_)
+    for (const QWidget* strip : strips_ + below_ + corner_)
         if (!strip->isHidden()) places.emplace_back(strip->geometry());
     return places;
 }
@@ -78,6 +78,21 @@ void StripStack::place() {
         y += height + kBetween;
     }
     placeBelow();
+    placeInCorner();
+}
+
+/// Beside the strips above, under them where the picture is too narrow for that.
+void StripStack::placeInCorner() {
+    for (QWidget* card : corner_) {
+        if (card->isHidden()) continue;
+        const QSize size = card->sizeHint();
+        QRect place(QPoint(picture_->width() - size.width() - kSide, top_), size);
+        for (const QWidget* strip : strips_)
+            if (!strip->isHidden() && strip->geometry().intersects(place))
+                place.moveTop(strip->geometry().bottom() + 1 + kBetween);
+        card->setGeometry(place);
+        card->raise();
+    }
 }
 
 void StripStack::placeBelow() {

@@ -17,8 +17,9 @@ namespace handpiece::desktop {
 class StripStack : public QObject {
     Q_OBJECT
   public:
-    /// Below is for what stays: the crown that is worked on lies in the upper part of the picture.
-    enum class Where { above, below };
+    /// Below is for what stays: the crown that is worked on lies in the upper part of the picture. The corner is the
+    /// upper right one: one at a time, as wide as it asks.
+    enum class Where { above, below, corner };
     explicit StripStack(QWidget* picture);
     /// Becomes a child of the picture, under those that are there; while it is hidden the next one takes its place.
     void add(QWidget* strip, Where where = Where::above);
@@ -33,9 +34,10 @@ class StripStack : public QObject {
   private:
     void place();
     void placeBelow();
+    void placeInCorner();
 
     QWidget* picture_;
-    QList<QWidget*> strips_, below_;
+    QList<QWidget*> strips_, below_, corner_;
     int top_ = 0;
 };
 

@@ -9313,6 +9313,10 @@ lingual: %4</source>
 <context>
     <name>handpiece::desktop::PracticeFeature</name>
     <message>
+        <source>Drawing the section</source>
+        <translation>断面を描いています</translation>
+    </message>
+    <message>
         <source>A folder with exercises</source>
         <translation>課題のフォルダー</translation>
     </message>
@@ -11360,6 +11364,49 @@ lingual: %4</source>
     <message>
         <source>%1: %2 (asked: %3)</source>
         <translation>%1：%2（求められる値：%3）</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::SectionCard</name>
+    <message>
+        <source>Section through the place that is shown</source>
+        <translation>表示している箇所の断面</translation>
+    </message>
+    <message>
+        <source>As the ideal is here.</source>
+        <translation>ここは見本どおりです。</translation>
+    </message>
+    <message>
+        <source>%1 still to be cut here.</source>
+        <translation>ここはあと %1 削る必要があります。</translation>
+    </message>
+    <message>
+        <source>%1 too much cut here.</source>
+        <translation>ここは %1 削りすぎています。</translation>
+    </message>
+    <message>
+        <source>Depth: %1, ideal: %2.</source>
+        <translation>深さ：%1（見本：%2）</translation>
+    </message>
+    <message>
+        <source>Depth: %1.</source>
+        <translation>深さ：%1</translation>
+    </message>
+    <message>
+        <source>yours</source>
+        <translation>自分の形成</translation>
+    </message>
+    <message>
+        <source>ideal</source>
+        <translation>見本</translation>
+    </message>
+    <message>
+        <source>uncut</source>
+        <translation>切削前</translation>
+    </message>
+    <message>
+        <source>A square is 1 mm.</source>
+        <translation>1 目盛りは 1 mm。</translation>
     </message>
 </context>
 </TS>

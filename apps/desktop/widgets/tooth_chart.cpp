@@ -183,8 +183,8 @@ void ToothChart::layOut() {
                     transform.translate(-box.center().x(), -box.center().y());
                     outline.addPolygon(own->second.outline);
                     outline.closeSubpath();
-                    for (const QPolygonF& line : own->second.grooves)
-                        grooves.addPolygon(line);
+                    for (const QPolygonF& groove : own->second.grooves)
+                        grooves.addPolygon(groove);
                 } else {
                     transform.scale(wide * size, most * size);
                     outline = crown(number, primary, grooves);

@@ -32,7 +32,9 @@ TEST(Course, TheTenAreThereInTheirOrder) {
         EXPECT_EQ(s.number, i < 10 ? static_cast<int>(i) + 1 : 0) << s.id;
         const auto* at = std::find(tasks::kLevels.begin(), tasks::kLevels.end(), s.level);
         ASSERT_NE(at, tasks::kLevels.end()) << s.id;
-        if (i < 10) EXPECT_GE(at - tasks::kLevels.begin(), level) << s.id;
+        if (i < 10) {
+            EXPECT_GE(at - tasks::kLevels.begin(), level) << s.id;
+        }
         level = i < 10 ? static_cast<int>(at - tasks::kLevels.begin()) : level;
         EXPECT_GE(s.minutes, 10.0);
         EXPECT_NE(preparation::findTemplate(s.preparation), nullptr) << s.id;

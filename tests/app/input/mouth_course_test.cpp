@@ -108,7 +108,9 @@ TEST(MouthCourse, aRecordingHasThePathAndTheTimeOfTheScript) {
         way.releaseS = beginsS + lastsS + 0.1;
         way.endS = way.releaseS + 0.4;
         MouthCourse course(mouthAt(46), way);
-        const std::vector<measures::Request> asked{{"path-length"}, {"force", {.statistic = "mean"}}, {"time"}};
+        measures::Selection mean;
+        mean.statistic = "mean";
+        const std::vector<measures::Request> asked{{"path-length"}, {"force", mean}, {"time"}};
         hand::HandMeasures measures(asked, {});
         double downS = 0.0;
         course.look = [&](double t, const messages::HapticSample& sample) {
@@ -210,7 +212,8 @@ TEST(MouthCourse, pressesAndDragsAtRandom) {
             const double speed = std::exp(test::uniform(random, std::log(15.0), std::log(400.0)));
             const Vec2 to = from + length * Vec2(std::cos(angle), std::sin(angle));
             const double dwellS = 0.25, lastsS = length / speed;
-            way.releaseS = way.pressS + dwellS + lastsS + 0.45;
+            // It waits for a handpiece that has to be taken another way.
+            way.releaseS = way.pressS + dwellS + lastsS + 1.5;
             way.endS = way.releaseS + 0.3;
             way.at = [=](double t) {
                 return Vec2(from + std::clamp((t - 0.65) / std::max(lastsS, 1e-6), 0.0, 1.0) * (to - from));

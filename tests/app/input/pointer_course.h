@@ -185,12 +185,12 @@ class PointerCourse {
     /// seen by the eye, whatever its depth.
     [[nodiscard]] Outside outside(double widenMm = 0.1) const {
         const measure::ToothProbe before(first);
-        const auto& uncut = station.tooth->field;
+        const auto& whole = station.tooth->field;
         const double h = 0.05;
-        const core::Box box = uncut.bounds();
+        const core::Box box = whole.bounds();
         Outside sum;
         const auto gone1 = [&](const core::Vec3& p) {
-            return uncut.distance(p) < 0.0 && before.signedDistanceMm(p) >= 0.0;
+            return whole.distance(p) < 0.0 && before.signedDistanceMm(p) >= 0.0;
         };
         std::vector<core::Vec3> second, gone;
         const core::Vec3 size = box.size();
@@ -200,7 +200,7 @@ class PointerCourse {
             for (double y = 0.5 * h; y < size.y(); y += h)
                 for (double x = 0.5 * h; x < size.x(); x += h) {
                     const core::Vec3 p = box.min + core::Vec3(x, y, z);
-                    if (uncut.distance(p) >= 0.0 || probe.signedDistanceMm(p) < 0.0) continue;
+                    if (whole.distance(p) >= 0.0 || probe.signedDistanceMm(p) < 0.0) continue;
                     (before.signedDistanceMm(p) >= 0.0 ? gone : second).push_back(p);
                 }
         }

@@ -226,22 +226,22 @@ TEST(TissueCache, SumsThatAreRightProveNothing) {
     const std::filesystem::path file = folder.path() / "x.tissues";
     const std::vector<std::byte> good = encodeTissues(map, 7);
     // docs/formats/tissue-cache.md
-    constexpr std::size_t kCountsAt = 24, kPayloadHashAt = 48, kHeaderBytes = 64;
+    constexpr std::size_t kCountsAt = 24, kTissueHashAt = 48, kTissueHeaderBytes = 64;
     std::uint64_t counts[3];
     std::memcpy(counts, &good[kCountsAt], sizeof counts);
     const std::uint64_t bricks = counts[0], mixed = counts[1], layers = counts[2];
     const auto readSummed = [&](std::vector<std::byte> data) {
-        const std::uint64_t payload = hashOf(std::span(data).subspan(kHeaderBytes));
-        std::memcpy(&data[kPayloadHashAt], &payload, 8);
+        const std::uint64_t payload = hashOf(std::span(data).subspan(kTissueHeaderBytes));
+        std::memcpy(&data[kTissueHashAt], &payload, 8);
         core::Hasher head;
-        head.add(std::span<const std::byte>(data).first(kHeaderBytes - 8));
+        head.add(std::span<const std::byte>(data).first(kTissueHeaderBytes - 8));
         const std::uint64_t hash = head.value();
-        std::memcpy(&data[kHeaderBytes - 8], &hash, 8);
+        std::memcpy(&data[kTissueHeaderBytes - 8], &hash, 8);
         core::writeFile(file, data, {.ownerOnly = true, .lasting = false});
         return readTissueFile(file, field, 7, known);
     };
     ASSERT_TRUE(readSummed(good));
-    const std::size_t ofBrick = kHeaderBytes + 4 * mixed, rest = ofBrick + bricks, count = rest + mixed,
+    const std::size_t ofBrick = kTissueHeaderBytes + 4 * mixed, rest = ofBrick + bricks, count = rest + mixed,
                       layerTissue = count + mixed, nodes = layerTissue + layers;
     const auto refused = [&](std::size_t at, auto value, const char* what) {
         std::vector<std::byte> data = good;
@@ -249,15 +249,15 @@ TEST(TissueCache, SumsThatAreRightProveNothing) {
         EXPECT_FALSE(readSummed(std::move(data))) << what;
     };
     std::uint32_t firstMixed = 0;
-    std::memcpy(&firstMixed, &good[kHeaderBytes], 4);
+    std::memcpy(&firstMixed, &good[kTissueHeaderBytes], 4);
     std::size_t inside = 0;
     while (map.ofBrick(static_cast<std::uint32_t>(inside)) == cases::Tissue::none)
         ++inside;
     for (const std::uint64_t lie : {std::uint64_t{0}, std::uint64_t{1} << 33, std::uint64_t{1} << 61})
         for (const std::size_t at : {kCountsAt, kCountsAt + 8, kCountsAt + 16})
             refused(at, lie, "a count that lies");
-    refused(kHeaderBytes, std::uint32_t{0xffffffffu}, "a brick beyond all");
-    refused(kHeaderBytes + 4, firstMixed, "a brick twice");
+    refused(kTissueHeaderBytes, std::uint32_t{0xffffffffu}, "a brick beyond all");
+    refused(kTissueHeaderBytes + 4, firstMixed, "a brick twice");
     refused(ofBrick + inside, std::uint8_t{0}, "no tissue inside");
     refused(ofBrick + inside, std::uint8_t{6}, "a tissue that the tooth has not");
     refused(ofBrick + firstMixed, std::uint8_t{1}, "a mixed brick of one tissue");
@@ -276,7 +276,8 @@ TEST(TissueCache, SumsThatAreRightProveNothing) {
     std::mt19937_64 generator(handpiece::test::seed());
     for (int i = 0; i < 300; ++i) {
         std::vector<std::byte> data = good;
-        const std::size_t from = i % 2 == 0 ? kCountsAt : kHeaderBytes, to = i % 2 == 0 ? kPayloadHashAt : data.size();
+        const std::size_t from = i % 2 == 0 ? kCountsAt : kTissueHeaderBytes,
+                          to = i % 2 == 0 ? kTissueHashAt : data.size();
         const std::uint64_t anything = generator();
         std::memcpy(&data[from + generator() % (to - from - 8)], &anything, 1 + generator() % 8);
         const auto got = readSummed(std::move(data));

@@ -458,32 +458,32 @@ TEST(WrongClock, ADayOffEndsLogInsAndCodesAndNothingElse) {
     const test::TemporaryFolder folder;
     const fs::path data = folder.path() / "school";
     School::furnish(data);
-    constexpr school::Milliseconds kNow = 1'700'000'000'000, kDay = 86'400'000;
+    constexpr school::Milliseconds kNow = 1'700'000'000'000, kDayMs = 86'400'000;
     Books books(data);
     const Act act{"server", kNow};
-    books.offerCode("one-time-code", "chair", kNow + kDay / 2, act);
-    books.addLogin(std::string(64, 'a'), "s017", kNow + kDay / 2, act);
+    books.offerCode("one-time-code", "chair", kNow + kDayMs / 2, act);
+    books.addLogin(std::string(64, 'a'), "s017", kNow + kDayMs / 2, act);
     // A server that is a day ahead: who is logged in logs in again, codes are made anew; a station goes on.
-    EXPECT_FALSE(books.personByToken(std::string(64, 'a'), kNow + kDay));
-    EXPECT_FALSE(books.enrolStation("one-time-code", std::string(32, '1'), std::string(64, 'k'), kNow + kDay));
-    ASSERT_TRUE(books.enrolStation(kCode, std::string(32, '2'), std::string(64, 'k'), kNow + kDay));
+    EXPECT_FALSE(books.personByToken(std::string(64, 'a'), kNow + kDayMs));
+    EXPECT_FALSE(books.enrolStation("one-time-code", std::string(32, '1'), std::string(64, 'k'), kNow + kDayMs));
+    ASSERT_TRUE(books.enrolStation(kCode, std::string(32, '2'), std::string(64, 'k'), kNow + kDayMs));
     EXPECT_TRUE(books.stationByKey(std::string(64, 'k')));
     // Set right again, a day back: nothing that was made meanwhile is in its way.
     EXPECT_TRUE(books.personByToken(std::string(64, 'a'), kNow));
     school::PushedAttempt p;
     p.attempt.id = school::newId(), p.attempt.exercise = "block", p.attempt.exerciseHash = std::string(16, 'e');
     p.attempt.rubricHash = std::string(16, 'f'), p.attempt.passed = "teacher", p.attempt.result = "{}";
-    p.attempt.began = kNow + kDay, p.attempt.finished = kNow + kDay + 1000;
+    p.attempt.began = kNow + kDayMs, p.attempt.finished = kNow + kDayMs + 1000;
     p.station = std::string(32, '2'), p.person = "s017", p.received = kNow;
     EXPECT_TRUE(books.push(p)) << "a station whose clock is a day ahead";
     // A lease that was taken in the wrong day: the clock goes back, and the work is done once.
-    const auto ahead = books.takeJob("w1", kNow + kDay, 60'000);
+    const auto ahead = books.takeJob("w1", kNow + kDayMs, 60'000);
     if (ahead) {
         EXPECT_FALSE(books.takeJob("w2", kNow, 60'000)) << "lent until a minute into tomorrow";
         EXPECT_TRUE(books.giveBack(*ahead));
         const auto again = books.takeJob("w2", kNow, 60'000);
         ASSERT_TRUE(again);
-        EXPECT_TRUE(books.takeJob("w3", kNow + kDay, 60'000)) << "the clock jumps: it ran out";
+        EXPECT_TRUE(books.takeJob("w3", kNow + kDayMs, 60'000)) << "the clock jumps: it ran out";
         school::Score score;
         score.attempt = p.attempt.id, score.state = "refused", score.passed = "teacher";
         EXPECT_FALSE(books.finish(*again, score)) << "and is finished by the other alone";

@@ -338,7 +338,9 @@ TEST_F(StoreTest, NothingThatWasStoredIsLostByKillNineInTheMiddle) {
         for (const Attempt& a : all) {
             there.insert(a.id);
             ASSERT_EQ(a.result.size(), 60000u);
-            if (promised.contains(a.id)) ASSERT_TRUE(store.judgementOf(a.id));
+            if (promised.contains(a.id)) {
+                ASSERT_TRUE(store.judgementOf(a.id));
+            }
             lines += store.judgementOf(a.id) ? 2 : 1;
         }
         for (const std::string& id : promised)

@@ -148,7 +148,9 @@ TEST_F(HandpieceHides, LittleOfTheCrownFromEveryView) {
                             const bool isFirst = x == 0.0 && y == 0.0 && tilt == 0.0 && handle == 0.35 && buccal == 1;
                             const Seen seen = look(camera, held(tip, tilt, towards, handle),
                                                    isFirst ? std::string("hides-").append(name).c_str() : nullptr);
-                            if (tilt == 0.0) EXPECT_LE(look(wide, held(tip, tilt, towards, handle)).pieces, 1) << name;
+                            if (tilt == 0.0) {
+                                EXPECT_LE(look(wide, held(tip, tilt, towards, handle)).pieces, 1) << name;
+                            }
                             most = std::max(most, seen.hidden);
                             sum += seen.hidden;
                             ++looks;

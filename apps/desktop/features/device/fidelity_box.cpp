@@ -137,10 +137,10 @@ void FidelityBox::setReport(const fidelity::Report& report) {
         QString value = said(config::words()(finding.value)), remedy = said(config::words()(finding.remedy));
         if (finding.id == "troubles" && !report.troubles.empty()) {
             // As the message says it that came with each.
-            QStringList said;
+            QStringList sentences;
             for (const link::DeviceFault trouble : report.troubles)
-                said << problemOf(trouble, report.vendorCode).what;
-            value = said.join(QLatin1Char(' '));
+                sentences << problemOf(trouble, report.vendorCode).what;
+            value = sentences.join(QLatin1Char(' '));
             remedy = problemOf(report.troubles.front(), report.vendorCode).remedy;
         }
         auto* item =

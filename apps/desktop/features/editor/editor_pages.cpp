@@ -580,11 +580,11 @@ WorkPage::WorkPage(Change change) : EditorPage(std::move(change)) {
     const auto ticks = [this](QListWidget* list, const char* step, std::vector<std::string> cases::Exercise::*where) {
         connect(list, &QListWidget::itemChanged, this, [this, list, step, where] {
             if (showing_) return;
-            std::vector<std::string> names;
+            std::vector<std::string> ticked;
             for (int i = 0; i < list->count(); ++i)
                 if (list->item(i)->checkState() == Qt::Checked)
-                    names.push_back(list->item(i)->data(Qt::UserRole).toString().toStdString());
-            change_(step, [&](Content& c) { c.exercise.*where = names; });
+                    ticked.push_back(list->item(i)->data(Qt::UserRole).toString().toStdString());
+            change_(step, [&](Content& c) { c.exercise.*where = ticked; });
         });
     };
     ticks(burs_, "", &cases::Exercise::allowedBurs);

@@ -583,10 +583,10 @@ void RubricPage::show(const Content& content) {
     none_->setEnabled(content.rubric.has_value());
     now_ = content.rubric;
     hasMark_->setEnabled(content.rubric.has_value());
-    const std::optional<double> passMark = content.rubric ? content.rubric->passMark : std::nullopt;
-    hasMark_->setChecked(passMark.has_value());
-    mark_->setEnabled(passMark.has_value());
-    const double mark = passMark.value_or(mark_->value());
+    const bool hasMark = content.rubric && content.rubric->passMark;
+    hasMark_->setChecked(hasMark);
+    mark_->setEnabled(hasMark);
+    const double mark = hasMark ? *content.rubric->passMark : mark_->value();
     if (std::abs(mark_->value() - mark) > 0.05) mark_->setValue(mark);
     showing_ = false;
     if (count > 0 && table_->currentRow() < 0) table_->setCurrentCell(0, kId);

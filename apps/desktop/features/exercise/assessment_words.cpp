@@ -24,11 +24,6 @@ int decimalsFor(double uncertainty) {
 
 }  // namespace
 
-QString inThisLanguage(const cases::Texts& texts) {
-    const std::string_view text = cases::inLanguage(texts, QLocale().bcp47Name().toStdString());
-    return QString::fromUtf8(text.data(), static_cast<qsizetype>(text.size()));
-}
-
 QString titleOf(const rubric::Rubric& rubric, const std::string& criterion) {
     const rubric::Criterion* found = rubric.criterion(criterion);
     return found && !found->title.empty() ? inThisLanguage(found->title) : QString::fromStdString(criterion);

@@ -5,11 +5,11 @@
 
 #include <QString>
 
+#include "desktop/work/this_language.h"
 #include "handpiece/assess/score/score.h"
 
 namespace handpiece::desktop {
 
-[[nodiscard]] QString inThisLanguage(const cases::Texts& texts);
 /// The graded criteria, a line each: title, what is best, points.
 [[nodiscard]] QString whatIsJudged(const rubric::Rubric& rubric);
 /// "0.42 ± 0.05 mm"

@@ -13,6 +13,7 @@
 #include "desktop/features/exercise/exercise_feature.h"
 #include "desktop/features/exercise/exercises_dialog.h"
 #include "desktop/features/exercise/progress_dialog.h"
+#include "desktop/features/exercise/section_card.h"
 #include "desktop/picture/show_view.h"
 #include "desktop/picture/start_view.h"
 #include "desktop/widgets/parts.h"
@@ -61,10 +62,12 @@ PracticeFeature::PracticeFeature(const FeatureContext& context, ExerciseFeature&
       exercises_(new ExercisesDialog(simulator_.folders().starters, &window_)),
       result_(new ResultDialog(&window_)),
       back_(named(new QPushButton(tr("Back to the result")), "resultBack", tr("Back to the result"))),
+      section_(new SectionCard),
       progress_(new ProgressDialog(&window_)) {
     openDialogs();
     back_->hide();
     view_.addStrip(back_);
+    view_.addStrip(section_, StripStack::Where::corner);
     connect(back_, &QPushButton::clicked, commands_[Command::result], &QAction::trigger);
     Commands& commands = window_.commands();
     on(commands_[Command::exercises], [this] {
@@ -199,7 +202,10 @@ void PracticeFeature::showDocument() {
     stopAtS_.reset();
     const auto& task = simulator_.task();
     const bool isAtWork = task && simulator_.mode() == Simulator::Mode::liveSession;
-    if (simulator_.mode() != Simulator::Mode::replay) back_->hide();
+    if (simulator_.mode() != Simulator::Mode::replay) {
+        back_->hide();
+        hideSection();
+    }
     const bool isGiven =
         isAtWork && task->preparation && !simulator_.permissions().locks(exercise::Operation::transparency);
     // What is asked is seen from the beginning; by oneself it is not, nor where an exercise locks it.
@@ -504,6 +510,8 @@ void PracticeFeature::show(const fs::path& session, const measures::Evidence& ev
     if (evidence.placeMm) turnTo(*evidence.placeMm);
     view_.setMark(evidence.placeMm, words);
     showIdealGlass();
+    hideSection();
+    if (evidence.placeMm && !playsWhole) showSection(*evidence.placeMm);
     const double endS = simulator_.replay()->durationS();
     if (evidence.timeS) {
         simulator_.seek(std::max(0.0, *evidence.timeS - kBeforeS));
@@ -522,6 +530,37 @@ void PracticeFeature::showIdealGlass() {
     if (!task->preparation || task->toothCase.parts.empty()) return;
     glass_.setZones({preparation::SeenZone::target});
     glass_.show(std::shared_ptr<const cases::Case>(task, &task->toothCase), *task->preparation);
+}
+
+/// Of the work as it was finished, whatever second of it is played.
+void PracticeFeature::showSection(const core::Vec3& placeMm) {
+    if (done_->work.work.teeth.empty()) return;
+    const auto made = std::make_shared<std::optional<report::PlaceSection>>();
+    sectioning_ = new Job(
+        tr("Drawing the section"),
+        [done = done_, placeMm, made](const core::Progress&) {
+            const course::FinishedWork& work = done->work;
+            tooth::ToothMirror own(work.work.teeth.front());
+            own.apply(work.work.state);
+            *made = report::placeSection(*work.task, own, work.bearings, placeMm);
+        },
+        this);
+    connect(sectioning_, &Job::done, this, [this, made, done = done_] {
+        std::exchange(sectioning_, nullptr)->deleteLater();
+        if (!*made) return;
+        section_->setSection(std::move(**made), done->work.bearings);
+        section_->show();
+    });
+    connect(sectioning_, &Job::failed, this, [this](const Problem& problem) {
+        std::exchange(sectioning_, nullptr)->deleteLater();
+        window_.showProblem(problem);
+    });
+    sectioning_->start();
+}
+
+void PracticeFeature::hideSection() {
+    if (sectioning_) std::exchange(sectioning_, nullptr)->abandon(this);
+    section_->hide();
 }
 
 /// When the teacher's bur cut at this place, where it did.

@@ -23,6 +23,7 @@ namespace handpiece::desktop {
 class ExerciseFeature;
 class ExercisesDialog;
 class ProgressDialog;
+class SectionCard;
 
 class PracticeFeature : public Feature {
     Q_OBJECT
@@ -50,6 +51,8 @@ class PracticeFeature : public Feature {
     void show(const std::filesystem::path& session, const measures::Evidence& evidence, const QString& words,
               bool playsWhole);
     void showIdealGlass();
+    void showSection(const core::Vec3& placeMm);
+    void hideSection();
     void showTeacherWork(const std::optional<measures::Evidence>& at);
     void turnTo(const core::Vec3& placeMm);
     void makeRoom();
@@ -69,6 +72,8 @@ class PracticeFeature : public Feature {
     ExercisesDialog* exercises_;
     ResultDialog* result_;
     QPushButton* back_;  ///< to the result, where it had to make room
+    SectionCard* section_;  ///< through the place that is shown
+    Job* sectioning_ = nullptr;
     ProgressDialog* progress_;
     std::shared_ptr<const Simulator::Finished> done_;
     std::string attempt_;            ///< its id in the store; empty: it could not be kept

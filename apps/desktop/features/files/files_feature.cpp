@@ -18,6 +18,7 @@
 #include "desktop/widgets/notation.h"
 #include "desktop/widgets/status_line.h"
 #include "desktop/work/simulator.h"
+#include "desktop/work/this_language.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -295,6 +296,12 @@ void FilesFeature::listRecent() {
     recent_->menuAction()->setEnabled(number > 0);
 }
 
+/// Empty where what is open is none.
+QString FilesFeature::exerciseTitle() const {
+    const auto& open = simulator_.toothCase();
+    return open && open->exercise ? inThisLanguage(open->exercise->title) : QString();
+}
+
 /// Of which tooth and when, where the program named the file by its time; a name that a person gave, or a code that
 /// hides whose it is, stays. Empty: such a name.
 QString FilesFeature::recordingTitle() const {
@@ -302,6 +309,7 @@ QString FilesFeature::recordingTitle() const {
     const QDateTime when = QDateTime::fromString(file.baseName().left(15), QStringLiteral("yyyyMMdd-HHmmss"));
     if (!when.isValid()) return {};
     QString tooth = toothName(simulator_.toothCase()->fdiNumber);
+    if (const QString exercise = exerciseTitle(); !exercise.isEmpty()) tooth = exercise;
     if (tooth.isEmpty()) tooth = QString::fromStdString(simulator_.toothCase()->name);  // a block
     return tr("Recording of %1, %2").arg(tooth, QLocale().toString(when, QLocale::ShortFormat));
 }
@@ -313,6 +321,10 @@ void FilesFeature::showTitle() {
         document.caseFile.filename() == document.name) {
         if (const QString told = recordingTitle(); !told.isEmpty()) name = told;
     }
+    // An exercise is known by its title, until it is saved under a name of the student's own; its file by the tooth's.
+    if (const QString exercise = exerciseTitle(); simulator_.task() && simulator_.mode() != Simulator::Mode::replay &&
+                                                  document.attemptFile.empty() && !exercise.isEmpty())
+        name = exercise;
     // A starter tooth has a name in every language until it is saved under one of the student's own.
     if (document.starter && document.attemptFile.empty() && simulator_.toothCase())
         name = toothName(simulator_.toothCase()->fdiNumber);

@@ -31,6 +31,7 @@ class FilesFeature : public Feature {
     void writePicture();
     void listRecent();
     [[nodiscard]] QString recordingTitle() const;
+    [[nodiscard]] QString exerciseTitle() const;
     void showTouch(const cases::Case& surroundings);
     void showTitle();
     void offerToMend(ErrorDialog* dialog);

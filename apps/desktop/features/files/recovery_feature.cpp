@@ -12,6 +12,8 @@
 
 #include "desktop/widgets/notation.h"
 #include "desktop/work/simulator.h"
+#include "desktop/work/this_language.h"
+#include "handpiece/base/core/error.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -23,8 +25,20 @@ constexpr CommandOf<Command> kCommands[] = {
      in(Shelf::file, 7), exercise::Operation::elsewhere},
 };
 
+/// Empty: it is no exercise, or one that cannot be read, which is told when the work is brought back.
+QString exerciseTitle(const SessionNote& note) {
+    if (note.exercise.isEmpty()) return {};
+    try {
+        return inThisLanguage(cases::parseExercise(note.exercise.toStdString(), note.title.toStdString()).title);
+    } catch (const core::Error&) {
+        return {};
+    }
+}
+
 QString titleOf(const SessionNote& note) {
-    return note.attemptFile.isEmpty() && note.starter ? toothName(note.starter->fdi) : note.title;
+    if (!note.attemptFile.isEmpty()) return note.title;
+    if (const QString exercise = exerciseTitle(note); !exercise.isEmpty()) return exercise;
+    return note.starter ? toothName(note.starter->fdi) : note.title;
 }
 
 }  // namespace

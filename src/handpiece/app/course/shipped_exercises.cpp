@@ -152,7 +152,7 @@ const std::vector<Row>& rows() {
              "口蓋側から近心の接触点部を開窓する。唇側のエナメル質は残すこと。21 に触れず、歯髄に近づかないこと。"},
             {8,
              "33-class-v",
-             4,
+             5,
              "intermediate",
              25,
              Stand::arch,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -266,14 +267,16 @@ void PointerController::State::travel() {
 /// A pressed bur follows the pointer; over an edge, and off what the stroke is on, it is lifted.
 void PointerController::State::lead(const Vec2& from, const Vec2& to) {
     const int parts = std::clamp(static_cast<int>(std::ceil((to - from).norm() / kJumpPixels)), 1, 32);
-    std::optional<double> before = sight ? sight->touchAt : std::nullopt;
+    // Not a number where nothing has been met: no place is nearer than that, and none farther.
+    constexpr double kNowhere = std::numeric_limits<double>::quiet_NaN();
+    double before = sight ? sight->touchAt.value_or(kNowhere) : kNowhere;
     bool leaves = false;
     if (presses() && touching) {
         for (int i = 1; i <= parts && !leaves; ++i) {
             const LineOfSight next = sightThrough(from + (static_cast<double>(i) / parts) * (to - from));
-            leaves = !next.touchAt || (stroke && next.what != *stroke) ||
-                     (before && (*next.touchAt < *before - kJumpMm || *next.touchAt > *before + kDropMm));
-            before = next.touchAt;
+            leaves = !next.touchAt || (stroke && next.what != *stroke) || *next.touchAt < before - kJumpMm ||
+                     *next.touchAt > before + kDropMm;
+            before = next.touchAt.value_or(kNowhere);
         }
     }
     if (leaves) return lift();

@@ -112,6 +112,8 @@ std::string whereOf(const score::CriterionScore& c, const measures::Evidence* at
         return word.empty() ? word : words()("advice.where", word);
     }
     if (const std::string word = sideWord(bearings, c.of.side); !word.empty()) return words()("advice.where", word);
+    // Where several are missing the first of them is no side.
+    if (c.measure == "orifices-reached" && c.evidence.size() > 1) return {};
     if (at == nullptr || !at->placeMm) return {};
     const std::string word = sideWord(bearings, sideOf(bearings, *at->placeMm));
     if (word.empty()) return {};

@@ -10,6 +10,7 @@
 
 #include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/page_png.h"
+#include "handpiece/app/report/place_section.h"
 #include "handpiece/app/report/section_outlines.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/config/words.h"
@@ -30,12 +31,6 @@ constexpr double kFacePixelMm = 0.03;
 constexpr double kEyeMm = 20.0;
 /// Of the tooth under the preparation is seen so much: the rest is roots.
 constexpr double kUnderMm = 6.0;
-
-/// Signed distance from a place to the ideal tooth [mm], negative in it: positive on one's own surface is tissue that
-/// should be gone, negative tissue that should be there.
-double toIdealMm(const zones::Zones& zones, const geometry::TriangleTree& whole, const Vec3& p) {
-    return std::max(whole.signedDistance(p), std::min(-zones.targetMm(p), zones.protectedMm(p)));
-}
 
 /// One tooth in one state.
 class Painter {

@@ -27,6 +27,15 @@ bool isUpper(int fdi) {
     return quadrant == 1 || quadrant == 2;
 }
 
+/// As that side is called on this tooth.
+std::string wordIn(const char* room, const Bearings& of, std::string_view side) {
+    if (side == "buccal" && isFront(of.fdi)) side = "labial";
+    if (side == "lingual" && isUpper(of.fdi)) side = "palatal";
+    if (side == "occlusal" && isFront(of.fdi)) side = "incisal";
+    const std::string id = fmt::format("{}.{}", room, side);
+    return words().has(id) ? words().text(id) : std::string();
+}
+
 }  // namespace
 
 Bearings bearingsOf(const tasks::Task& task) {
@@ -65,11 +74,11 @@ std::string_view sideOf(const Bearings& of, const core::Vec3& placeMm) {
 }
 
 std::string sideWord(const Bearings& of, std::string_view side) {
-    if (side == "buccal" && isFront(of.fdi)) side = "labial";
-    if (side == "lingual" && isUpper(of.fdi)) side = "palatal";
-    if (side == "occlusal" && isFront(of.fdi)) side = "incisal";
-    const std::string id = fmt::format("where.{}", side);
-    return words().has(id) ? words().text(id) : std::string();
+    return wordIn("where", of, side);
+}
+
+std::string sideNoun(const Bearings& of, std::string_view side) {
+    return wordIn("side", of, side);
 }
 
 std::string axisWord(const Bearings& of, std::string_view side) {

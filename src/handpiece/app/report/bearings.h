@@ -25,6 +25,8 @@ struct Bearings {
 [[nodiscard]] std::string_view sideOf(const Bearings& bearings, const core::Vec3& placeMm);
 /// "mesially", "at the mesiobuccal cusp", "palatally" of an upper tooth; empty for what has no word.
 [[nodiscard]] std::string sideWord(const Bearings& bearings, std::string_view side);
+/// "mesial", "palatal": as it stands at the edge of a picture.
+[[nodiscard]] std::string sideNoun(const Bearings& bearings, std::string_view side);
 /// Of an extent along the axis of that side: "mesiodistally".
 [[nodiscard]] std::string axisWord(const Bearings& bearings, std::string_view side);
 

@@ -36,7 +36,7 @@ struct Plot {
     std::string title, xLabel, yLabel;  ///< labels with their unit: "time [s]"
     std::vector<Series> series;
     std::vector<Limit> limits;
-    std::vector<Mark> marks;
+    std::vector<Mark> marks{};
     int width = 760, height = 340;
 };
 

@@ -27,16 +27,9 @@ struct Grid {
 };
 
 /// Marching squares: each cell's crossings, joined in pairs; the middle decides a saddle.
-std::string pathOf(const Grid& grid, double highV) {
-    std::string d;
-    const auto add = [&](const Vec2& a, const Vec2& b) {
-        const auto put = [&](const char* command, const Vec2& p) {
-            fmt::format_to(std::back_inserter(d), "{}{:.2f} {:.2f}", command, (p.x() - grid.u0) * kPixelsPerMm,
-                           (highV - p.y()) * kPixelsPerMm);
-        };
-        put("M", a);
-        put("L", b);
-    };
+std::vector<SectionLine> linesOf(const Grid& grid) {
+    std::vector<SectionLine> lines;
+    const auto add = [&](const Vec2& a, const Vec2& b) { lines.push_back({a, b}); };
     for (int j = 0; j + 1 < grid.height; ++j)
         for (int i = 0; i + 1 < grid.width; ++i) {
             // Corners counter-clockwise; edge k lies between corner k and the next.
@@ -69,47 +62,63 @@ std::string pathOf(const Grid& grid, double highV) {
                 add(crossing[(first + 2) % 4], crossing[(first + 3) % 4]);
             }
         }
-    return d;
+    return lines;
 }
 
 }  // namespace
 
-std::string outlinesSvg(const SectionOutlines& outlines) {
+std::vector<SectionLine> linesIn(const SectionOutlines& plane, const Vec2& low, const Vec2& high,
+                                 const geometry::ScalarFunction& f) {
     Grid grid;
-    double highU = -1e300, highV = -1e300;
-    grid.u0 = grid.v0 = 1e300;
+    grid.u0 = low.x();
+    grid.v0 = low.y();
+    grid.width = static_cast<int>((high.x() - low.x()) / kCellMm) + 2;
+    grid.height = static_cast<int>((high.y() - low.y()) / kCellMm) + 2;
+    if (grid.width < 2 || grid.height < 2) return {};
+    grid.values.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), 0.0);
+    core::parallelFor(static_cast<std::size_t>(grid.height), 4, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t j = begin; j < end; ++j)
+            for (int i = 0; i < grid.width; ++i)
+                grid.values[static_cast<std::size_t>(i) + static_cast<std::size_t>(grid.width) * j] =
+                    f(plane.originMm + (grid.u0 + kCellMm * i) * plane.right +
+                      (grid.v0 + kCellMm * static_cast<double>(j)) * plane.up);
+    });
+    return linesOf(grid);
+}
+
+std::string outlinesSvg(const SectionOutlines& outlines) {
+    Vec2 low(1e300, 1e300), high(-1e300, -1e300);
     for (int corner = 0; corner < 8; ++corner) {
         const Vec3 p((corner & 1) != 0 ? outlines.box.max.x() : outlines.box.min.x(),
                      (corner & 2) != 0 ? outlines.box.max.y() : outlines.box.min.y(),
                      (corner & 4) != 0 ? outlines.box.max.z() : outlines.box.min.z());
-        const double u = outlines.right.dot(p - outlines.originMm), v = outlines.up.dot(p - outlines.originMm);
-        grid.u0 = std::min(grid.u0, u - kMarginMm);
-        highU = std::max(highU, u + kMarginMm);
-        grid.v0 = std::min(grid.v0, v - kMarginMm);
-        highV = std::max(highV, v + kMarginMm);
+        const Vec3 off = p - outlines.originMm;
+        const Vec2 at(outlines.right.dot(off), outlines.up.dot(off)), margin(kMarginMm, kMarginMm);
+        low = low.cwiseMin(at - margin);
+        high = high.cwiseMax(at + margin);
     }
-    grid.v0 = std::max(grid.v0, outlines.lowestMm - outlines.up.dot(outlines.originMm));
-    grid.width = static_cast<int>((highU - grid.u0) / kCellMm) + 2;
-    grid.height = static_cast<int>((highV - grid.v0) / kCellMm) + 2;
-    if (grid.width < 2 || grid.height < 2) return {};
+    low.y() = std::max(low.y(), outlines.lowestMm - outlines.up.dot(outlines.originMm));
+    if (high.y() < low.y()) return {};
+    const double highU = high.x(), highV = high.y();
     const auto lineOf = [&](const geometry::ScalarFunction& f) {
-        grid.values.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), 0.0);
-        core::parallelFor(static_cast<std::size_t>(grid.height), 4, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t j = begin; j < end; ++j)
-                for (int i = 0; i < grid.width; ++i)
-                    grid.values[static_cast<std::size_t>(i) + static_cast<std::size_t>(grid.width) * j] =
-                        f(outlines.originMm + (grid.u0 + kCellMm * i) * outlines.right +
-                          (grid.v0 + kCellMm * static_cast<double>(j)) * outlines.up);
-        });
-        return pathOf(grid, highV);
+        std::string d;
+        const auto put = [&](const char* command, const Vec2& p) {
+            fmt::format_to(std::back_inserter(d), "{}{:.2f} {:.2f}", command, (p.x() - low.x()) * kPixelsPerMm,
+                           (highV - p.y()) * kPixelsPerMm);
+        };
+        for (const SectionLine& line : linesIn(outlines, low, high, f)) {
+            put("M", line.from);
+            put("L", line.to);
+        }
+        return d;
     };
-    const double w = (highU - grid.u0) * kPixelsPerMm, h = (highV - grid.v0) * kPixelsPerMm;
+    const double w = (highU - low.x()) * kPixelsPerMm, h = (highV - low.y()) * kPixelsPerMm;
     std::string svg = fmt::format(
         "<svg class=\"hp\" viewBox=\"0 0 {:.0f} {:.0f}\" role=\"img\" xmlns=\"http://www.w3.org/2000/svg\">", w, h);
-    for (double u = std::ceil(grid.u0); u < highU; u += 1.0)
+    for (double u = std::ceil(low.x()); u < highU; u += 1.0)
         svg += fmt::format("<line class=\"hp-grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"0\" y2=\"{1:.1f}\"/>",
-                           (u - grid.u0) * kPixelsPerMm, h);
-    for (double v = std::ceil(grid.v0); v < highV; v += 1.0)
+                           (u - low.x()) * kPixelsPerMm, h);
+    for (double v = std::ceil(low.y()); v < highV; v += 1.0)
         svg += fmt::format("<line class=\"hp-grid\" x1=\"0\" x2=\"{1:.1f}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\"/>",
                            (highV - v) * kPixelsPerMm, w);
     const auto draw = [&](const geometry::ScalarFunction& f, const char* style) {

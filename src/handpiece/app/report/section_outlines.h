@@ -4,7 +4,9 @@
 /// Own and ideal in one section, as lines. Private to this room.
 
 #include <string>
+#include <vector>
 
+#include "handpiece/app/report/place_section.h"
 #include "handpiece/base/geometry/isosurface.h"
 
 namespace handpiece::report {
@@ -15,6 +17,9 @@ struct SectionOutlines {
     double lowestMm = -1e9;                       ///< nothing under this height along `up` is drawn
     geometry::ScalarFunction before, own, ideal;  ///< signed distances; `ideal` may be empty
 };
+/// Where `f` is zero in the plane, between two corners of it [mm from its origin]; lines lie within 0.02 mm.
+[[nodiscard]] std::vector<SectionLine> linesIn(const SectionOutlines& plane, const core::Vec2& low,
+                                               const core::Vec2& high, const geometry::ScalarFunction& f);
 /// Uncut surface, ideal and own as one <svg>, with a grid of millimetres; lines lie within 0.02 mm.
 [[nodiscard]] std::string outlinesSvg(const SectionOutlines& outlines);
 

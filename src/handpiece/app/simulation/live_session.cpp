@@ -206,16 +206,16 @@ struct LiveSession::State {
     void attend(const rt::SchedulingGrant& scheduling) {
         const std::int64_t begunNs = rt::monotonicNs();
         if (attendedNs != 0) absentNs = std::max(absentNs, begunNs - attendedNs);
-        std::vector<std::shared_ptr<SampleFeed>> told;
+        std::vector<std::shared_ptr<SampleFeed>> toTell;
         {
             const std::lock_guard lock(mutex);
             if (nextListener) listener = std::move(*nextListener);
             nextListener.reset();
-            told = feeds;
+            toTell = feeds;
         }
         fetch();
         if (std::exchange(fresh, false))
-            for (const auto& feed : told)
+            for (const auto& feed : toTell)
                 feed->write(last);
         answer();
         serveOne();

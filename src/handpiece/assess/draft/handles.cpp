@@ -151,16 +151,16 @@ class Finder {
     }
     /// Straight down from the uncut surface to where the target ends; nothing of it there: the surface.
     [[nodiscard]] Vec3 endUnder(const Vec3& over) const {
-        constexpr double kStepMm = 0.05, kMostMm = 6.0;
+        constexpr double kDownStepMm = 0.05, kMostMm = 6.0;
         const double wayMm = laid_.whole->firstMeeting(over, -Vec3::UnitZ()).distanceMm;
         if (!std::isfinite(wayMm)) return over;  // beside the tooth
         const Vec3 top = over - wayMm * Vec3::UnitZ();
         const auto targetAt = [&](double downMm) { return laid_.zones->targetMm(top - downMm * Vec3::UnitZ()); };
-        double in = kStepMm;
+        double in = kDownStepMm;
         if (targetAt(in) > 0.0) return top;
-        while (in < kMostMm && targetAt(in + kStepMm) <= 0.0)
-            in += kStepMm;
-        double out = in + kStepMm;
+        while (in < kMostMm && targetAt(in + kDownStepMm) <= 0.0)
+            in += kDownStepMm;
+        double out = in + kDownStepMm;
         for (int i = 0; i < 20; ++i) {
             const double middle = 0.5 * (in + out);
             (targetAt(middle) > 0.0 ? out : in) = middle;
@@ -204,8 +204,8 @@ class Finder {
             const double x = fissureX + out.x() * std::max(kInMm, out.x() * (tip.x() - fissureX) + 0.3);
             Vec3 place = endUnder(Vec3(x, tip.y(), tip.z() + 10.0));
             // Where a box or the isthmus runs under the tip: beside it, where the target ends as deep as the number.
-            constexpr double kStepMm = 0.2, kMostMm = 2.0;
-            for (double off = kStepMm; cap > 0.0 && !isAsDeep(place, cap) && off < kMostMm; off += kStepMm)
+            constexpr double kAsideStepMm = 0.2, kMostMm = 2.0;
+            for (double off = kAsideStepMm; cap > 0.0 && !isAsDeep(place, cap) && off < kMostMm; off += kAsideStepMm)
                 for (const Vec2& to :
                      {Vec2(out.x(), 0.0), Vec2(0.0, out.y()), Vec2(out.x(), out.y()), Vec2(0.0, -out.y())}) {
                     const Vec3 other = endUnder(Vec3(x + off * to.x(), tip.y() + off * to.y(), tip.z() + 10.0));

@@ -95,6 +95,25 @@ std::optional<Vec3> mostOfTargetLeft(const zones::Zones& zones, const tooth::Too
     return deepest->at;
 }
 
+/// Where what was cut lies farthest past the target (of leeway, at the side or under the floor), past all that may go
+/// (of the container), or in what must stay; none where it does not.
+std::optional<Vec3> farthestInto(CutTooth& tooth, std::string_view zone) {
+    std::optional<Vec3> place;
+    double most = 0.0;
+    for (const SurfacePoint& point : tooth.cutPoints()) {
+        const zones::Zones::Distances d = tooth.preparation().zones->distancesMm(point.p);
+        const double past = zone == "protected"      ? -d.kept
+                            : zone == "container"    ? d.allowed
+                            : zone == "leeway-side"  ? (d.wall >= 0.0 ? d.target : 0.0)
+                            : zone == "leeway-floor" ? (d.wall < 0.0 ? d.target : 0.0)
+                                                     : 0.0;
+        if (past <= most) continue;
+        most = past;
+        place = point.p;
+    }
+    return place;
+}
+
 }  // namespace
 
 bool isAsked(const Selection& of, Tissue tissue) {
@@ -145,7 +164,12 @@ double volumeOf(const tooth::ToothModel& whole, const tooth::ToothMirror& cut, b
 
 Taken takeRemoved(CutTooth& tooth, const Selection& of) {
     const Amount amount = amountOf(tooth, of, false);
-    return amount.reason.empty() ? Taken{amount.removed, {}} : none(amount.reason);
+    if (!amount.reason.empty()) return none(amount.reason);
+    Taken taken{amount.removed, {}};
+    if (!of.zone.empty() && amount.removed > 0.0)
+        if (const std::optional<Vec3> place = farthestInto(tooth, of.zone))
+            taken.evidence.push_back({{}, *place, {}, kMostHere});
+    return taken;
 }
 
 Taken takeRemovedShare(CutTooth& tooth, const Selection& of) {
@@ -156,6 +180,9 @@ Taken takeRemovedShare(CutTooth& tooth, const Selection& of) {
     if (of.zone == zones::kZoneNames[static_cast<std::size_t>(zones::Zone::target)] && *share.value < 100.0)
         if (const std::optional<Vec3> place = mostOfTargetLeft(*tooth.preparation().zones, *tooth.preparation().cut))
             share.evidence.push_back({{}, *place, {}, "most is still to be cut here"});
+    if (!of.zone.empty() && amount.removed > 0.0)
+        if (const std::optional<Vec3> place = farthestInto(tooth, of.zone))
+            share.evidence.push_back({{}, *place, {}, kMostHere});
     return share;
 }
 

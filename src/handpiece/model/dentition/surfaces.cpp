@@ -334,13 +334,13 @@ void Anatomy::settleGrooves() {
     // Fissures run where lobes have met: along the valleys that the crests leave, pits where those are deepest.
     const auto settled = [&](const Vec2& from, const Vec2& across, double reach) {
         Vec2 best = from;
-        double lowest = std::numeric_limits<double>::infinity();
+        double least = std::numeric_limits<double>::infinity();
         const bool isLine = across.squaredNorm() > 0.0;
         for (int i = -5; i <= 5; ++i)
             for (int j = isLine ? 0 : -5; j <= (isLine ? 0 : 5); ++j) {
                 const Vec2 off = reach / 5.0 * (isLine ? Vec2(i * across) : Vec2(i, j));
                 const double height = occlusalHeight(from.x() + off.x(), from.y() + off.y()) + 0.3 * off.squaredNorm();
-                if (height < lowest) lowest = height, best = from + off;
+                if (height < least) least = height, best = from + off;
             }
         return best;
     };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <fmt/format.h>
 
+#include <array>
 #include <atomic>
 
 #include "handpiece/base/core/error.h"
@@ -142,12 +143,13 @@ class NodeFiller {
     std::uint32_t computePacket(const std::array<std::int32_t, 3>& brick, const LocalNode* nodes, int count,
                                 const PacketDistance& search, std::uint32_t seed, float* values,
                                 std::uint32_t* nearest) {
-        Vec3 point[kPacket];
+        std::array<Vec3, kPacket> point;
+        point.fill(Vec3::Zero());  // GCC does not see that `count` is at least 1
         float distance[kPacket];
         std::uint32_t triangle[kPacket];
         for (int i = 0; i < count; ++i)
-            point[i] = placeOf(brick, nodes[i]);
-        const std::uint32_t next = search.distances(point, count, seed, distance, triangle);
+            point[static_cast<std::size_t>(i)] = placeOf(brick, nodes[i]);
+        const std::uint32_t next = search.distances(point.data(), count, seed, distance, triangle);
         for (int i = 0; i < count; ++i)
             values[nodes[i].index()] = distance[i];
         for (int i = 0; nearest != nullptr && i < count; ++i)

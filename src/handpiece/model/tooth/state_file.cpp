@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -193,8 +194,9 @@ std::vector<std::byte> encodeState(const StateDelta& state, std::uint64_t identi
     });
     std::vector<std::byte> data(sizeof(Header));
     const auto append = [&](const void* from, std::size_t bytes) {
-        const auto* first = static_cast<const std::byte*>(from);
-        data.insert(data.end(), first, first + bytes);
+        const std::size_t at = data.size();
+        data.resize(at + bytes);
+        std::copy_n(static_cast<const std::byte*>(from), bytes, data.data() + at);
     };
     const auto others = static_cast<std::uint32_t>(state.removedMm3.others.size());
     append(&others, sizeof others);

@@ -221,7 +221,7 @@ class ParticlePass : public Pass {
     PixelRect mistRect_;
     int mistShrinks_ = 2;
     gl::Program program_{"particles", kVertex, kFragment};
-    gl::Program mistProgram_{"mist", kVertex, std::string("#define MIST\n") + kFragment};
+    gl::Program mistProgram_{"mist", kVertex, std::string("#define MIST\n").append(kFragment)};
     gl::Program veilProgram_{"veil of mist", gl::kFullScreenVertex, kVeilFragment};
     gl::Texture through_;  ///< what mist lets through
     gl::Framebuffer throughTarget_;

@@ -33,7 +33,7 @@ struct Groove {
     std::shared_ptr<const tooth::ToothModel> model;
     preparation::Laid laid;
     Bearings bearings;
-    Vec3 top;            ///< on the block, over the middle of what is asked
+    Vec3 top;             ///< on the block, over the middle of what is asked
     double deepMm = 0.0;  ///< of the floor that is asked
 };
 

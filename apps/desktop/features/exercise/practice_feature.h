@@ -71,7 +71,7 @@ class PracticeFeature : public Feature {
     std::unique_ptr<school::Store> store_;
     ExercisesDialog* exercises_;
     ResultDialog* result_;
-    QPushButton* back_;  ///< to the result, where it had to make room
+    QPushButton* back_;     ///< to the result, where it had to make room
     SectionCard* section_;  ///< through the place that is shown
     Job* sectioning_ = nullptr;
     ProgressDialog* progress_;

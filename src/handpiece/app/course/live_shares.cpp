@@ -5,8 +5,7 @@
 
 namespace handpiece::course {
 
-LiveShares liveShares(const zones::Zones& zones, const zones::WholeVolumes& whole,
-                      const simulation::LiveTooth& tooth) {
+LiveShares liveShares(const zones::Zones& zones, const zones::WholeVolumes& whole, const simulation::LiveTooth& tooth) {
     const core::Alone alone;
     tooth::ToothMirror mirror(tooth.modelShared());
     mirror.apply(tooth.state({}));

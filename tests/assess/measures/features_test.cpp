@@ -62,6 +62,37 @@ class Block : public testing::Test {
     static inline Body body_;
 };
 
+/// A groove along x is asked, 1.6 mm wide and 1.8 deep. The left is done, the middle half: most is left at the right,
+/// though it reaches no deeper under the surface there than in the middle. Too long it is at the left.
+TEST_F(Block, whatIsLeftAndWhatIsTooMuchAreShownWhereTheyAre) {
+    const auto slab = [](double fromX, double toX, double deepMm, const Vec3& p) {
+        return std::max({fromX - p.x(), p.x() - toX, std::abs(p.y()) - 0.8, -deepMm - p.z()});
+    };
+    const auto cut =
+        test::carved(body_, [&](const Vec3& p) { return std::min(slab(-2.6, -0.5, 1.8, p), slab(-0.5, 0.8, 0.9, p)); });
+    Preparation p = preparation(body_, *cut);
+    const zones::Zones zones(
+        [&](const Vec3& q) {
+            return zones::PastTarget{slab(-2.0, 2.6, 1.8, body_.inGrid.applyInverse(q)), -zones::kFarMm};
+        },
+        body_.model->tree.bounds().grown(1.0), {0.2, 0.2});
+    p.zones = &zones;
+    const auto placeOf = [&](const char* kind, const char* zone) {
+        Selection of;
+        of.zone = zone;
+        const Measured measured = take(p, kind, of);
+        return measured.evidence.empty() ? Vec3(Vec3::Constant(99.0))
+                                         : body_.inGrid.applyInverse(*measured.evidence.front().placeMm);
+    };
+    const Vec3 left = placeOf("removed-share", "target");
+    EXPECT_GT(left.x(), 0.8) << left.transpose();
+    EXPECT_LT(left.x(), 2.6);
+    EXPECT_NEAR(left.z(), 0.0, 1.0);
+    EXPECT_NEAR(placeOf("removed", "container").x(), -2.6, 0.1);
+    EXPECT_NEAR(placeOf("removed", "leeway-side").x(), -2.6, 0.1);
+    EXPECT_EQ(placeOf("removed", "protected").x(), 99.0) << "nothing is protected";
+}
+
 TEST_F(Block, anUndercutIsFoundWhereItIsAndRoughnessIsNone) {
     BoxCavity box;
     box.angleDeg[1] = -8.0;

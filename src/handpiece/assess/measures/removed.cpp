@@ -50,24 +50,24 @@ Amount amountOf(CutTooth& tooth, const Selection& of, bool withWhole) {
     return amount;
 }
 
-/// Where of the tooth's surface as it is the target reaches deepest under it; none: nothing of it is left. To a voxel,
-/// for the eye to be turned there.
+/// A place of the tooth's surface as it is, about which most of the target still stands: the deepest of its brick;
+/// none: nothing of it is left. To a voxel, for the eye to be turned there.
 std::optional<Vec3> mostOfTargetLeft(const zones::Zones& zones, const tooth::ToothMirror& cut) {
     const tooth::ToothModel& whole = cut.model();
     const field::FieldView view = whole.field.view();
     const auto dense = static_cast<std::uint32_t>(whole.field.storage().coarse.size());
     const double h = view.voxelMm, edge = field::kBrickCells * h;
-    struct Deepest {
-        double targetMm = 0.0;
+    struct Left {
+        double voxels = 0.0, targetMm = 0.0;
         Vec3 at = Vec3::Zero();
     };
-    std::vector<Deepest> of(dense);
+    std::vector<Left> of(dense);
     core::parallelFor(dense, 16, [&](std::size_t begin, std::size_t end) {
         std::array<float, field::kBrickValues> scratch;
         for (std::size_t i = begin; i < end; ++i) {
             const auto id = static_cast<std::uint32_t>(i);
-            // Bricks far from any surface.
-            if (!cut.isChanged(id) && view.brickIndex[i] < 0) continue;
+            // Nothing is left of bricks far outside.
+            if (!cut.isChanged(id) && view.brickIndex[i] < 0 && view.coarse[i] >= 0.0f) continue;
             const auto brick = field::brickAt(view.bricks, id);
             Vec3 low;
             for (int k = 0; k < 3; ++k)
@@ -80,19 +80,33 @@ std::optional<Vec3> mostOfTargetLeft(const zones::Zones& zones, const tooth::Too
                     for (int x = 0; x < field::kBrickCells; ++x) {
                         const auto value = static_cast<double>(
                             now[static_cast<std::size_t>(x + field::kBrickNodes * (y + field::kBrickNodes * z))]);
-                        if (value > 0.0 || value < -h) continue;
+                        if (value > 0.0) continue;
                         const Vec3 p = low + h * Vec3(x, y, z);
-                        const double target = zones.targetMm(p);
-                        if (target >= of[i].targetMm) continue;
-                        if (const double both = std::max(target, -zones.protectedMm(p)); both < of[i].targetMm)
-                            of[i] = {both, p};
+                        double target = zones.targetMm(p);
+                        if (target < 0.0) target = std::max(target, -zones.protectedMm(p));
+                        if (target >= 0.0) continue;
+                        of[i].voxels += 1.0;
+                        if (value >= -h && target < of[i].targetMm) of[i].targetMm = target, of[i].at = p;
                     }
         }
     });
-    const auto deepest = std::min_element(of.begin(), of.end(),
-                                          [](const Deepest& a, const Deepest& b) { return a.targetMm < b.targetMm; });
-    if (deepest == of.end() || deepest->targetMm >= 0.0) return {};
-    return deepest->at;
+    // With what stands in the bricks beside it.
+    double most = 0.0;
+    std::optional<Vec3> place;
+    for (std::uint32_t id = 0; id < dense; ++id) {
+        if (of[id].targetMm >= 0.0) continue;
+        const auto brick = field::brickAt(view.bricks, id);
+        double about = 0.0;
+        for (int k = 0; k < 27; ++k) {
+            const std::array<std::int32_t, 3> beside{brick[0] + k % 3 - 1, brick[1] + k / 3 % 3 - 1,
+                                                     brick[2] + k / 9 - 1};
+            const bool isIn = std::equal(beside.begin(), beside.end(), std::begin(view.bricks),
+                                         [](std::int32_t at, std::int32_t count) { return at >= 0 && at < count; });
+            if (isIn) about += of[field::denseOf(view.bricks, beside)].voxels;
+        }
+        if (about > most) most = about, place = of[id].at;
+    }
+    return place;
 }
 
 /// Where what was cut lies farthest past the target (of leeway, at the side or under the floor), past all that may go

@@ -20,6 +20,7 @@
 #include "desktop/features/exercise/practice_feature.h"
 #include "desktop/features/exercise/progress_dialog.h"
 #include "desktop/features/exercise/result_dialog.h"
+#include "desktop/features/exercise/section_card.h"
 #include "desktop/picture/solid_view.h"
 #include "desktop/widgets/notice_bar.h"
 #include "desktop/work/live_zones.h"

@@ -157,7 +157,15 @@ TEST_F(PracticeTest, AClickOnEvidenceTurnsTheEyeAndPlaysTheSeconds) {
     onTop.placeMm = core::Vec3(box.centre().x() + 5.0, box.centre().y() + 4.0, box.max.z());
     emit result().evidenceChosen(onTop);
     ASSERT_TRUE(waitFor([&] { return section->isVisible(); }));
-    EXPECT_FALSE(section->accessibleDescription().isEmpty());
+    EXPECT_TRUE(section->accessibleDescription().isEmpty()) << "nothing was to be cut there, and nothing was";
+    report::PlaceSection figures;
+    figures.ownDeepMm = 0.94;
+    EXPECT_EQ(SectionCard::figuresOf(figures).replace(QChar(0xa0), QLatin1Char(' ')), "Depth: 0.9 mm.");
+    figures.idealDeepMm = 1.0;
+    EXPECT_EQ(SectionCard::figuresOf(figures).replace(QChar(0xa0), QLatin1Char(' ')), "Depth: 0.9 mm, ideal: 1.0 mm.");
+    figures.idealDeepMm = 0.0;
+    EXPECT_EQ(SectionCard::figuresOf(figures).replace(QChar(0xa0), QLatin1Char(' ')),
+              "Nothing was to be cut here: 0.9 mm deep.");
     EXPECT_LE(section->geometry().right(), view()->width());
     there.timeS = 0.5 * endS;
     emit result().evidenceChosen(there);

@@ -117,6 +117,14 @@ class ShellTest : public ::testing::Test {
     }
     /// Presses in the middle of the picture until something is gone, as a newcomer would.
     [[nodiscard]] bool cut() {
+        // The stroke ends with the pedal: undo knows it from then on, and no sample on its way has less removed.
+        return pressUntilCut() && waitFor([this] {
+                   return simulator().sample().pedal == 0.0 && !simulator().status().inStroke &&
+                          simulator().status().undoSteps > 0;
+               });
+    }
+    /// And lets go: the bur is still in the tooth.
+    [[nodiscard]] bool pressUntilCut() {
         const QPoint middle = view()->rect().center();
         const double before = removedMm3();
         QMouseEvent move(QEvent::MouseMove, QPointF(middle), view()->mapToGlobal(QPointF(middle)), Qt::NoButton,
@@ -127,11 +135,7 @@ class ShellTest : public ::testing::Test {
         QTest::mousePress(view(), Qt::LeftButton, Qt::NoModifier, middle);
         const bool gone = waitFor([&] { return removedMm3() > before + 0.02; });
         QTest::mouseRelease(view(), Qt::LeftButton, Qt::NoModifier, middle);
-        // The stroke ends with the pedal: undo knows it from then on, and no sample on its way has less removed.
-        return gone && waitFor([this] {
-                   return simulator().sample().pedal == 0.0 && !simulator().status().inStroke &&
-                          simulator().status().undoSteps > 0;
-               });
+        return gone;
     }
     /// Of the bur.
     [[nodiscard]] double speedMmS() {

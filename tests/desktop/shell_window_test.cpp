@@ -327,6 +327,20 @@ TEST_F(ShellTest, TheVoxelChangesBeforeAndAfterCutting) {
     EXPECT_TRUE(waitFor([&] { return removedMm3() > 0.5 * againMm3; }));
 }
 
+// Ctrl+Z as soon as the button is let go: the bur is still coming out, and the stroke has not ended.
+TEST_F(ShellTest, AStrokeIsTakenBackThatHasJustBeenLetGo) {
+    startWithTooth();
+    ASSERT_TRUE(cut());
+    const double onceMm3 = removedMm3();
+    ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
+    ASSERT_TRUE(pressUntilCut());
+    ASSERT_TRUE(waitFor([this] { return action("actionUndo")->isEnabled(); }));
+    EXPECT_TRUE(simulator().status().inStroke) << "or this test tries nothing";
+    action("actionUndo")->trigger();
+    EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - onceMm3) < 1e-9 && !simulator().status().inStroke; }));
+    EXPECT_EQ(simulator().status().undoSteps, 1u) << "the one before stays";
+}
+
 TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {
     startWithTooth();
     ASSERT_TRUE(cut());

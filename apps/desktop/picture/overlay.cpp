@@ -459,7 +459,8 @@ void landmarks(QPainter& p, const Area& area) {
     p.restore();
 }
 
-/// What is said of the marked place: beside the ring, towards the side that has more room, never over it.
+/// What is said of the marked place: beside the ring, towards the side that has more room, never over it; above or
+/// below what lies there already.
 void markWords(QPainter& p, const Area& area, const QPointF& at, double ringRadius) {
     const double most = std::min(340.0, 0.45 * area.box.width());
     const bool isRight = at.x() < area.box.center().x();
@@ -472,8 +473,13 @@ void markWords(QPainter& p, const Area& area, const QPointF& at, double ringRadi
     box.moveTop(std::clamp(at.y() - box.height() / 2.0, area.box.top() + 4.0,
                            std::max(area.box.top() + 4.0, area.box.bottom() - box.height() - 4.0)));
     box.moveLeft(isRight ? at.x() + gap : at.x() - gap - box.width());
-    haloLine(p, {isRight ? box.left() : box.right(), at.y()}, {at.x() + (isRight ? 1 : -1) * ringRadius, at.y()},
-             kLine);
+    for (const QRectF& other : area.state.covered) {
+        if (!other.intersects(box)) continue;
+        const bool isBelow = area.box.bottom() - other.bottom() > box.height() + 12.0;
+        box.moveTop(isBelow ? other.bottom() + 6.0 : other.top() - box.height() - 6.0);
+    }
+    const QPointF end(isRight ? box.left() : box.right(), std::clamp(at.y(), box.top(), box.bottom()));
+    haloLine(p, end, {at.x() + (isRight ? 1 : -1) * ringRadius, at.y()}, kLine);
     area.labels.push_back(box);
     paintPanel(p, box);
     p.setPen(kText);

@@ -11373,18 +11373,6 @@ lingual: %4</source>
         <translation>表示している箇所の断面</translation>
     </message>
     <message>
-        <source>As the ideal is here.</source>
-        <translation>ここは見本どおりです。</translation>
-    </message>
-    <message>
-        <source>%1 still to be cut here.</source>
-        <translation>ここはあと %1 削る必要があります。</translation>
-    </message>
-    <message>
-        <source>%1 too much cut here.</source>
-        <translation>ここは %1 削りすぎています。</translation>
-    </message>
-    <message>
         <source>Depth: %1, ideal: %2.</source>
         <translation>深さ：%1（見本：%2）</translation>
     </message>
@@ -11407,6 +11395,14 @@ lingual: %4</source>
     <message>
         <source>A square is 1 mm.</source>
         <translation>1 目盛りは 1 mm。</translation>
+    </message>
+    <message>
+        <source>As you finished it.</source>
+        <translation>終了時の形成です。</translation>
+    </message>
+    <message>
+        <source>Nothing was to be cut here: %1 deep.</source>
+        <translation>ここは削らない所です：深さ %1</translation>
     </message>
 </context>
 </TS>

@@ -200,7 +200,10 @@ void Simulator::openSession(const fs::path& path, bool keepsReview) {
             emit unsavedChanged(false);
         },
         [this] {
-            if (leftFor_) closeReplay();
+            if (leftFor_)
+                closeReplay();
+            else if (mode_ == Mode::empty && tooth_)
+                close();  // of work that was finished, whose recording is gone: nothing can be done with its picture
         });
 }
 

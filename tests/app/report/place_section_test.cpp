@@ -51,7 +51,6 @@ TEST(PlaceSection, whatIsLeftIsTheWholeDepthWhereNothingWasCut) {
     const tooth::ToothMirror uncut(g.model);
     const std::optional<PlaceSection> section = placeSection(g.task, uncut, g.bearings, g.top);
     ASSERT_TRUE(section);
-    EXPECT_GT(*section->leftMm, 0.2);
     EXPECT_NEAR(*section->ownDeepMm, 0.0, 0.01);
     EXPECT_NEAR(*section->idealDeepMm, g.deepMm, 0.03);
     EXPECT_NEAR(lowestOf(section->ideal, 0.2), -g.deepMm, 0.05);
@@ -67,7 +66,6 @@ TEST(PlaceSection, theIdealItselfIsAsItShouldBe) {
     const Vec3 floor = g.top - g.deepMm * Vec3::UnitZ();
     const std::optional<PlaceSection> section = placeSection(g.task, own, g.bearings, floor);
     ASSERT_TRUE(section);
-    EXPECT_NEAR(*section->leftMm, 0.0, 0.05);
     EXPECT_NEAR(*section->ownDeepMm, *section->idealDeepMm, 0.05);
     EXPECT_NEAR(lowestOf(section->own, 0.2), 0.0, 0.05);
     EXPECT_NEAR(lowestOf(section->before, 3.0), g.deepMm, 0.05);

@@ -100,7 +100,7 @@ TEST(Words, EveryTextThatIsUsedIsThereAndEveryOneIsUsed) {
         for (const char* family :
              {"tissue.", "fidelity.name.", "fidelity.verdict.", "scheduling.class.", "rubric.status.", "view.",
               "measure.", "assessment.scan-on-", "school-exam.", "school-exam.kind-", "school-exam.state-",
-              "school-live.flag-", "school-office.", "where.", "along.", "along.front-"})
+              "school-live.flag-", "school-office.", "where.", "side.", "along.", "along.front-"})
             isFamily = isFamily || (id.rfind(family, 0) == 0 &&
                                     all.find('"' + id.substr(std::string(family).size()) + '"') != std::string::npos);
         EXPECT_TRUE(isFamily || isAdvice(id) || asked.count(id) > 0 || isEvent(id) ||

@@ -13,6 +13,7 @@
 #include "desktop/widgets/force_gauge.h"
 #include "desktop/work/device_words.h"
 #include "desktop/work/simulator.h"
+#include "handpiece/app/input/pointer_controller.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/record/session/event_watch.h"
 
@@ -114,9 +115,8 @@ void DrillFeature::addDocks() {
 
 void DrillFeature::connectCommands() {
     on(commands_[Command::undo], [this] {
-        simulator_.undo();
-        view_.clearBlood();  // the stroke goes back with what it did to the gingiva
-        tellStep(WelcomeStrip::Step::undo);
+        undoesWhenOut_ = simulator_.status().inStroke;
+        if (!undoesWhenOut_) takeBack();
     });
     on(commands_[Command::redo], [this] { simulator_.redo(); });
     on(commands_[Command::reset], [this] {
@@ -144,7 +144,9 @@ void DrillFeature::connectCommands() {
     };
     using Status = simulation::LiveSessionStatus;
     const auto isFree = [](const Status& status) { return !status.restoring && !status.inStroke; };
-    enable(Command::undo, [isFree](const Status& status) { return isFree(status) && status.undoSteps > 0; });
+    enable(Command::undo, [this](const Status& status) {
+        return !status.restoring && (status.inStroke ? isComingOut() : status.undoSteps > 0);
+    });
     enable(Command::redo, [isFree](const Status& status) { return isFree(status) && status.redoSteps > 0; });
     enable(Command::reset,
            [this, isFree](const Status& status) { return isFree(status) && (status.cut || view_.isBleeding()); });
@@ -270,6 +272,7 @@ void DrillFeature::takeBackNotices(const messages::HapticSample& sample) {
 }
 
 void DrillFeature::showDocument() {
+    undoesWhenOut_ = false;
     const bool isOpen = simulator_.tooth() && simulator_.toothCase();
     // Nobody cuts in a replay or a work that is looked at, nor before there is a tooth.
     welcome_->setAllowed(isOpen && simulator_.mode() == Simulator::Mode::liveSession &&
@@ -320,9 +323,26 @@ void DrillFeature::keepSettings() {
     settings_.set(QStringLiteral("work/cuttingVibration"), p.vibration.on);
 }
 
+void DrillFeature::takeBack() {
+    simulator_.undo();
+    view_.clearBlood();  // the stroke goes back with what it did to the gingiva
+    tellStep(WelcomeStrip::Step::undo);
+}
+
+/// The button is let go, and the bur on its way out of what it cut: the stroke ends when it is.
+bool DrillFeature::isComingOut() const {
+    const input::PointerController* const hand = view_.hand();
+    return hand != nullptr && !hand->isPressed() && !hand->pedalLatched();
+}
+
 void DrillFeature::showTick() {
     const messages::HapticSample& sample = simulator_.sample();
     const simulation::LiveSessionStatus& status = simulator_.status();
+    undoesWhenOut_ = undoesWhenOut_ && isComingOut();
+    if (undoesWhenOut_ && !status.inStroke && !status.restoring) {
+        undoesWhenOut_ = false;
+        takeBack();
+    }
     bar_->setActualSpeed(sample.speedRpm, (sample.flags & messages::kStalled) != 0);
     gauge_->setForce(core::toVec(sample.forceN).norm(), sample.timeS,
                      simulator_.givesForce() && (sample.flags & messages::kForceLimited) != 0);

@@ -135,6 +135,7 @@ void PracticeFeature::openDialogs() {
         exercises_->setFolder(toPath(folder));
     });
     connect(result_, &ResultDialog::opened, back_, &QWidget::hide);
+    connect(result_, &QDialog::finished, this, [this] { back_->setVisible(!section_->isHidden()); });
     connect(result_, &ResultDialog::judged, this, [this](const OwnJudgement& own) { keep(own); });
     connect(result_, &ResultDialog::evidenceChosen, this, &PracticeFeature::showEvidence);
     connect(result_, &ResultDialog::teacherWorkRequested, this, &PracticeFeature::showTeacherWork);
@@ -548,7 +549,7 @@ void PracticeFeature::showSection(const core::Vec3& placeMm) {
     connect(sectioning_, &Job::done, this, [this, made, done = done_] {
         std::exchange(sectioning_, nullptr)->deleteLater();
         if (!*made) return;
-        section_->setSection(std::move(**made), done->work.bearings);
+        section_->setSection(std::move(**made), done->work.bearings, view_.camera().right());
         section_->show();
     });
     connect(sectioning_, &Job::failed, this, [this](const Problem& problem) {

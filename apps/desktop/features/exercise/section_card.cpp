@@ -14,7 +14,7 @@
 namespace handpiece::desktop {
 namespace {
 
-constexpr int kSize = 210, kMargin = 8, kLegend = 40;
+constexpr int kSize = 210, kMargin = 8, kLegend = 56;
 // What a hand can see: nearer than that a surface is where it should be.
 constexpr double kSeenMm = 0.05;
 
@@ -52,24 +52,19 @@ SectionCard::SectionCard(QWidget* parent) : QWidget(parent), figures_(new QLabel
 }
 
 QString SectionCard::figuresOf(const report::PlaceSection& section) {
-    QStringList said;
-    if (section.leftMm) {
-        const double left = *section.leftMm;
-        said << (std::abs(left) < kSeenMm ? tr("As the ideal is here.")
-                 : left > 0.0             ? tr("%1 still to be cut here.").arg(mm(left))
-                                          : tr("%1 too much cut here.").arg(mm(-left)));
-    }
-    if (section.ownDeepMm && section.idealDeepMm)
-        said << tr("Depth: %1, ideal: %2.").arg(mm(*section.ownDeepMm), mm(*section.idealDeepMm));
-    else if (section.ownDeepMm)
-        said << tr("Depth: %1.").arg(mm(*section.ownDeepMm));
-    return said.join(QLatin1Char('\n'));
+    if (!section.ownDeepMm) return {};
+    const QString own = mm(*section.ownDeepMm);
+    if (!section.idealDeepMm) return tr("Depth: %1.").arg(own);
+    if (*section.idealDeepMm > 0.0) return tr("Depth: %1, ideal: %2.").arg(own, mm(*section.idealDeepMm));
+    return *section.ownDeepMm < kSeenMm ? QString() : tr("Nothing was to be cut here: %1 deep.").arg(own);
 }
 
-void SectionCard::setSection(report::PlaceSection section, const report::Bearings& bearings) {
+void SectionCard::setSection(report::PlaceSection section, const report::Bearings& bearings,
+                             const core::Vec3& eyesRight) {
     const auto wordOf = [&](std::string_view side) { return QString::fromStdString(report::sideNoun(bearings, side)); };
-    left_ = wordOf(section.leftSide);
-    right_ = wordOf(section.rightSide);
+    isMirrored_ = section.right.dot(eyesRight) < 0.0;
+    left_ = wordOf(isMirrored_ ? section.rightSide : section.leftSide);
+    right_ = wordOf(isMirrored_ ? section.leftSide : section.rightSide);
     figures_->setText(figuresOf(section));
     setAccessibleDescription(figures_->text());
     section_ = std::move(section);
@@ -97,15 +92,16 @@ void SectionCard::paintEvent(QPaintEvent*) {
     if (!section_) return;
     const QRect box = drawing();
     const double scale = kSize / (2.0 * section_->halfMm);
-    const QPointF middle = QRectF(box).center();
-    const auto at = [&](const core::Vec2& v) { return middle + scale * QPointF(v.x(), -v.y()); };
+    const QPointF place(QRectF(box).center().x(), box.top() + scale * section_->highMm);
+    const auto at = [&](const core::Vec2& v) { return place + scale * QPointF(isMirrored_ ? -v.x() : v.x(), -v.y()); };
     p.save();
     p.setClipRect(box);
     p.fillRect(box, palette().base());
     p.setPen(tones.line);
-    for (int i = -static_cast<int>(section_->halfMm); i <= section_->halfMm; ++i) {  // millimetres
-        p.drawLine(at({i, -section_->halfMm}), at({i, section_->halfMm}));
-        p.drawLine(at({-section_->halfMm, i}), at({section_->halfMm, i}));
+    const double allMm = 2.0 * section_->halfMm;
+    for (int i = -static_cast<int>(allMm); i <= static_cast<int>(allMm); ++i) {  // millimetres from the place
+        p.drawLine(at({i, -allMm}), at({i, allMm}));
+        p.drawLine(at({-allMm, i}), at({allMm, i}));
     }
     const auto draw = [&](const std::vector<report::SectionLine>& lines, const Line& as) {
         p.setPen(QPen(as.colour, as.width));
@@ -122,12 +118,15 @@ void SectionCard::paintEvent(QPaintEvent*) {
     draw(section_->ideal, idealLine(palette()));
     p.setPen(QPen(palette().text().color(), 1.5));
     p.setBrush(Qt::NoBrush);
-    p.drawEllipse(middle, 6.0, 6.0);
+    p.drawEllipse(place, 6.0, 6.0);
     p.setPen(palette().text().color());
     const int line = p.fontMetrics().height();
     const QRect edge = box.adjusted(4, kSize - line - 2, -4, -2);
-    p.drawText(edge, Qt::AlignLeft | Qt::AlignBottom, left_);
-    p.drawText(edge, Qt::AlignRight | Qt::AlignBottom, right_);
+    for (const auto& [side, words] : {std::pair(Qt::AlignLeft, left_), std::pair(Qt::AlignRight, right_)}) {
+        const auto where = side | Qt::AlignBottom;
+        p.fillRect(p.boundingRect(edge, static_cast<int>(where), words), palette().base());
+        p.drawText(edge, static_cast<int>(where), words);
+    }
     p.restore();
     // What is which, and how large a square is.
     int x = box.left();
@@ -143,7 +142,8 @@ void SectionCard::paintEvent(QPaintEvent*) {
     if (!section_->ideal.empty()) legend(idealLine(palette()), tr("ideal"));
     legend(uncutLine(palette()), tr("uncut"));
     p.setPen(tones.quiet);
-    p.drawText(QRect(box.left(), y + line, kSize, line), Qt::AlignLeft | Qt::AlignVCenter, tr("A square is 1 mm."));
+    p.drawText(QRect(box.left(), y + line, kSize, 2 * line), Qt::AlignLeft | Qt::AlignTop,
+               tr("A square is 1 mm.") + QLatin1Char('\n') + tr("As you finished it."));
 }
 
 }  // namespace handpiece::desktop

@@ -17,8 +17,9 @@ class SectionCard : public QWidget {
     Q_OBJECT
   public:
     explicit SectionCard(QWidget* parent = nullptr);
-    void setSection(report::PlaceSection section, const report::Bearings& bearings);
-    /// Its figures: "0.3 mm still to be cut here. 1.2 mm deep, ideal: 1.5 mm."
+    /// Turned as the eye sees it, whose right (tooth frame) that is.
+    void setSection(report::PlaceSection section, const report::Bearings& bearings, const core::Vec3& eyesRight);
+    /// Its figures: "Depth: 1.2 mm, ideal: 1.5 mm."
     [[nodiscard]] static QString figuresOf(const report::PlaceSection& section);
     [[nodiscard]] QSize sizeHint() const override;
 
@@ -30,6 +31,7 @@ class SectionCard : public QWidget {
 
     std::optional<report::PlaceSection> section_;
     QString left_, right_;
+    bool isMirrored_ = false;
     QLabel* figures_;
 };
 

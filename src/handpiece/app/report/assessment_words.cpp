@@ -111,7 +111,6 @@ constexpr const char* kSaid[] = {
     "said.chamber-cut",
     "said.caries-here",
     "said.no-finish-line",
-    "said.outermost",
     "said.stalled",
     "said.most-tilted",
     "said.slowest",

@@ -14,9 +14,11 @@ namespace {
 using core::Vec2;
 using core::Vec3;
 
-constexpr double kHalfMm = 3.5;    // a cavity and a half to either side
-constexpr double kFloorCos = 0.8;  // of a surface's normal and the way in: a floor, of which a depth is told
-constexpr double kOnMm = 0.4;      // from the surface: a place of another tooth, or of the pulp, is farther off
+constexpr double kHalfMm = 3.5;     // a cavity and a half to either side
+constexpr double kOverMm = 1.2;     // above the uncut surface is air
+constexpr double kDeepestMm = 5.0;  // or the place itself would not be seen
+constexpr double kFloorCos = 0.8;   // of a surface's normal and the way in: a floor, of which a depth is told
+constexpr double kOnMm = 0.4;       // from the surface: a place of another tooth, or of the pulp, is farther off
 constexpr double kFarMm = 12.0, kStepMm = 0.02;
 
 struct Axis {
@@ -78,14 +80,18 @@ std::optional<PlaceSection> placeSection(const tasks::Task& task, const tooth::T
     plane.right = section.right;
     plane.up = section.up;
     const Vec2 corner(kHalfMm, kHalfMm);
-    const auto linesOf = [&](const geometry::ScalarFunction& f) { return linesIn(plane, -corner, corner, f); };
+    const std::optional<double> deepMm = probe.depthAlongMm(placeMm, section.up);
+    section.highMm = std::clamp(deepMm.value_or(0.0), 0.0, kDeepestMm) + kOverMm;
+    const Vec2 middle(0.0, section.highMm - kHalfMm);
+    const auto linesOf = [&](const geometry::ScalarFunction& f) {
+        return linesIn(plane, middle - corner, middle + corner, f);
+    };
     section.before = linesOf([&](const Vec3& p) { return whole.signedDistance(p); });
     section.own = linesOf(ownMm);
     if (laid) section.ideal = linesOf([&](const Vec3& p) { return toIdealMm(*laid->zones, whole, p); });
 
-    if (laid) section.leftMm = toIdealMm(*laid->zones, whole, placeMm);
     if (normal.dot(section.up) < kFloorCos) return section;
-    section.ownDeepMm = probe.depthAlongMm(placeMm, section.up);
+    section.ownDeepMm = deepMm;
     if (!laid || !section.ownDeepMm) return section;
     const Vec3 top = placeMm + *section.ownDeepMm * section.up;
     for (double deep = kStepMm; deep < kFarMm; deep += kStepMm)

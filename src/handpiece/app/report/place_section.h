@@ -21,11 +21,11 @@ struct SectionLine {
 struct PlaceSection {
     core::Vec3 right, up;                         ///< unit, tooth frame; up is from where one works
     double halfMm = 0.0;                          ///< so much is drawn to each side
+    double highMm = 0.0;                          ///< and up to so high, twice that in all: the uncut surface is seen
     std::string_view leftSide, rightSide;         ///< of measures::kSides; empty: the tooth has none
     std::vector<SectionLine> before, ideal, own;  ///< the uncut tooth, how it should be, as it was cut
-    /// Of the place from the ideal's surface: positive, so much is still to be cut; negative, so much too much is gone.
-    std::optional<double> leftMm;
-    /// Under the uncut surface, along the way in, where that meets a floor: of one's own and of the ideal.
+    /// Under the uncut surface, along the way in, where that meets a floor: of one's own and of the ideal; 0 where
+    /// nothing was to be cut.
     std::optional<double> ownDeepMm, idealDeepMm;
 };
 

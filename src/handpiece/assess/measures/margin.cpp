@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // outline-extent, proximal-clearance; the cavosurface margin that both are taken of
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -115,8 +116,8 @@ Taken takeOutlineExtent(CutTooth& tooth, const Selection& of) {
         all.emplace_back(place.p.dot(*towards), &place);
         if (place.roughMm == 0.0) even.push_back(all.back());
     }
-    double extent[2];
-    const MarginPlace* outermost = nullptr;
+    double extent[2] = {0.0, 0.0};
+    std::array<const MarginPlace*, 2> ends{};
     Taken taken;
     for (const bool isHigh : {false, true}) {
         const auto endOf = [&](std::vector<std::pair<double, const MarginPlace*>>& places) {
@@ -130,11 +131,18 @@ Taken takeOutlineExtent(CutTooth& tooth, const Selection& of) {
         auto end = endOf(even.empty() ? all : even);
         if (const auto farther = endOf(all); std::abs(farther.first - end.first) > 0.5 * tooth.voxelMm()) end = farther;
         extent[isHigh ? 1 : 0] = end.first;
-        outermost = end.second;
+        ends[isHigh ? 1 : 0] = end.second;
         taken.offMm += end.second->roughMm;
     }
     taken.value = extent[1] - extent[0];
-    taken.evidence.push_back({{}, outermost->p, {}, "outermost of the outline"});
+    // Too long it is where it goes farthest past the target, too short where it falls farthest behind it.
+    const auto pastMm = [&](const MarginPlace* end, bool isHigh) {
+        const zones::Zones* zones = tooth.preparation().zones;
+        return zones == nullptr ? (isHigh ? 1.0 : 0.0) : zones->targetMm(end->p);
+    };
+    const bool isHighFarther = pastMm(ends[1], true) >= pastMm(ends[0], false);
+    taken.evidence.push_back({{}, ends[isHighFarther ? 1 : 0]->p, {}, kMostHere});
+    taken.evidence.push_back({{}, ends[isHighFarther ? 0 : 1]->p, {}, kLeastHere});
     return taken;
 }
 

@@ -333,12 +333,17 @@ TEST_F(ShellTest, AStrokeIsTakenBackThatHasJustBeenLetGo) {
     ASSERT_TRUE(cut());
     const double onceMm3 = removedMm3();
     ASSERT_TRUE(waitFor([this] { return simulator().sample().tick > 100; }));
-    ASSERT_TRUE(pressUntilCut());
-    ASSERT_TRUE(waitFor([this] { return action("actionUndo")->isEnabled(); }));
-    EXPECT_TRUE(simulator().status().inStroke) << "or this test tries nothing";
-    action("actionUndo")->trigger();
-    EXPECT_TRUE(waitFor([&] { return std::abs(removedMm3() - onceMm3) < 1e-9 && !simulator().status().inStroke; }));
-    EXPECT_EQ(simulator().status().undoSteps, 1u) << "the one before stays";
+    // A busy machine may be so late that the bur is out already.
+    bool wasInTime = false;
+    for (int i = 0; i < 5 && !wasInTime; ++i) {
+        ASSERT_TRUE(pressUntilCut());
+        ASSERT_TRUE(waitFor([this] { return action("actionUndo")->isEnabled(); }));
+        wasInTime = simulator().status().inStroke;
+        action("actionUndo")->trigger();
+        ASSERT_TRUE(waitFor([&] { return std::abs(removedMm3() - onceMm3) < 1e-9 && !simulator().status().inStroke; }));
+        EXPECT_EQ(simulator().status().undoSteps, 1u) << "the one before stays";
+    }
+    EXPECT_TRUE(wasInTime);
 }
 
 TEST_F(ShellTest, ReplaysWhatWasDoneAndComesBack) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// One's own work and the ideal in a section through one place, with how far they lie apart there.
+/// One's own work and the ideal in a section through one place, with how deep both are there.
 
 #include <optional>
 #include <string_view>

@@ -279,6 +279,25 @@ TEST(PointerDevice, leftBehindItComesUpToWhereTheStrokeBegan) {
     EXPECT_NEAR(tip.x(), 1.0, 0.05) << "it comes along";
 }
 
+// On its way out the head stands aslant in a tooth, with more than the load: the hand gives way beside it.
+TEST(PointerDevice, comingOutItDoesNotPressTheHeadIntoATooth) {
+    Alone alone(Vec3(0, 0, -0.9));
+    PointerTarget target = targetAt(Vec3::Zero(), 1.0, 1.0);
+    target.farMm = target.passMm = 0.0;
+    alone.mailbox->write(target);
+    const Vec3 normal = Vec3(0.6, 0.0, -0.8);
+    double firstN = 0.0, mostN = 0.0, nowN = 0.0;
+    for (int i = 0; i < 1000; ++i) {
+        nowN = alone.meet(alone.read(), Vec3(0, 0, -1.8), normal, alone.hand.capability().maxStiffnessNPerMm);
+        if (i == 0) firstN = nowN;
+        mostN = std::max(mostN, nowN);
+    }
+    EXPECT_GT(firstN, 1.3);
+    EXPECT_LE(mostN, firstN);
+    EXPECT_LT(nowN, 1.1);
+    EXPECT_GT(nowN, 0.5) << "it presses on, as far as the load goes";
+}
+
 TEST(PointerDevice, ledItGivesWayAcross) {
     // Out of a cavity whose wall leans: no force across stays.
     Alone alone;

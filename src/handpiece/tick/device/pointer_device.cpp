@@ -363,7 +363,8 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
         // out.
         const double free = std::clamp((1.0 + 2.0 * kOverLoad - allN / wish.loadN) / kOverLoad, 0.0, 1.0);
         const Vec3 along = step.dot(against) * against, beyond = step - along;
-        const Vec3 out = std::min(0.0, beyond.dot(way)) * way;
+        Vec3 out = std::min(0.0, beyond.dot(way)) * way;
+        out -= std::max(0.0, out.dot(against)) * against;  // where the head stands in the way out
         step = along + out + free * (beyond - out);
     }
     step = heldTo(step, std::min(settings.travelMmS * periodS,

@@ -15,7 +15,7 @@ namespace handpiece::desktop {
 namespace {
 
 constexpr int kSize = 210, kMargin = 8, kLegend = 56;
-// What a hand can see: nearer than that a surface is where it should be.
+// Shallower than that nothing was cut: a tenth is told as the nearest.
 constexpr double kSeenMm = 0.05;
 
 QString mm(double value) {

@@ -81,14 +81,8 @@ class Painter {
     /// The eye turned to a place of the surface, with a needle that stands on it.
     [[nodiscard]] Png place(const Vec3& at, const Vec3& draw) {
         const double h = live_.model().field.settings().voxelMm;
-        Vec3 normal = live_.withProbe([&](const measure::ToothProbe& probe) {
-            Vec3 slope;
-            for (int k = 0; k < 3; ++k)
-                slope[k] =
-                    probe.signedDistanceMm(at + h * Vec3::Unit(k)) - probe.signedDistanceMm(at - h * Vec3::Unit(k));
-            return slope;
-        });
-        normal = normal.norm() > 1e-12 ? Vec3(normal.normalized()) : draw;
+        const Vec3 normal =
+            live_.withProbe([&](const measure::ToothProbe& probe) { return outwardAt(probe, h, at, draw); });
         // Between the surface's own normal and where the hand comes from: into a cavity, not through its wall.
         Vec3 towards = 0.7 * normal + draw;
         towards = towards.norm() > 1e-6 ? Vec3(towards.normalized()) : draw;

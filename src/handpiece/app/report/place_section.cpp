@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "handpiece/app/report/section_outlines.h"
-#include "handpiece/senses/measure/tooth_probe.h"
 
 namespace handpiece::report {
 namespace {
@@ -61,12 +60,7 @@ std::optional<PlaceSection> placeSection(const tasks::Task& task, const tooth::T
     PlaceSection section;
     section.up = bearings.draw;
     section.halfMm = kHalfMm;
-    const double h = own.model().field.settings().voxelMm;
-    Vec3 normal;
-    for (int k = 0; k < 3; ++k)
-        normal[k] =
-            probe.signedDistanceMm(placeMm + h * Vec3::Unit(k)) - probe.signedDistanceMm(placeMm - h * Vec3::Unit(k));
-    normal = normal.norm() > 1e-12 ? Vec3(normal.normalized()) : section.up;
+    const Vec3 normal = outwardAt(probe, own.model().field.settings().voxelMm, placeMm, section.up);
     // Across a wall, so that one sees how far it stands off; along the arch where there is none.
     const std::array<Axis, 2> axes = axesOf(bearings, section.up);
     const Axis& across =

@@ -8,6 +8,7 @@
 #include "handpiece/app/report/advice.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/assessment_words.h"
+#include "handpiece/app/report/place_section.h"
 #include "handpiece/app/report/review_gather.h"
 #include "handpiece/app/report/session_report.h"
 #include "handpiece/base/config/words.h"
@@ -191,10 +192,9 @@ Volume idealOf(const tasks::Task& task, const Gathered& seen) {
                 const bool isNear = isCut || ((p.array() >= low.array()).all() && (p.array() <= high.array()).all());
                 // Far outside nothing is ever asked.
                 if (!isNear || seen.uncut.values[at] == kMiddle + kMost) return;
-                const double toIdealMm =
-                    std::max(seen.model->tree.signedDistance(p), std::min(-zones.targetMm(p), zones.protectedMm(p)));
-                ideal.values[at] = static_cast<std::uint8_t>(eightBits(toIdealMm, kMost / kDeviationMostMm) -
-                                                             whole[seen.uncut.values[at]]);
+                ideal.values[at] = static_cast<std::uint8_t>(
+                    eightBits(toIdealMm(zones, seen.model->tree, p), kMost / kDeviationMostMm) -
+                    whole[seen.uncut.values[at]]);
             });
         }
     });

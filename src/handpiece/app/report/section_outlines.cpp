@@ -86,6 +86,14 @@ std::vector<SectionLine> linesIn(const SectionOutlines& plane, const Vec2& low, 
     return linesOf(grid);
 }
 
+core::Vec3 outwardAt(const measure::ToothProbe& probe, double voxelMm, const Vec3& placeMm, const Vec3& otherwise) {
+    Vec3 slope;
+    for (int k = 0; k < 3; ++k)
+        slope[k] = probe.signedDistanceMm(placeMm + voxelMm * Vec3::Unit(k)) -
+                   probe.signedDistanceMm(placeMm - voxelMm * Vec3::Unit(k));
+    return slope.norm() > 1e-12 ? Vec3(slope.normalized()) : otherwise;
+}
+
 std::string outlinesSvg(const SectionOutlines& outlines) {
     Vec2 low(1e300, 1e300), high(-1e300, -1e300);
     for (int corner = 0; corner < 8; ++corner) {

@@ -127,6 +127,7 @@ struct PointerDevice::State {
     Quat orientation = Quat::Identity();
     Vec3 forceN = Vec3::Zero();  // of the tooth
 
+    [[nodiscard]] Vec3 across(const Vec3& v) const noexcept { return v - wish.way * wish.way.dot(v); }
     void turn(double periodS) noexcept;
     void begin(bool pressing) noexcept;
     [[nodiscard]] double travelMmS() const noexcept;
@@ -303,7 +304,6 @@ void PointerDevice::State::move(double h) noexcept {
 
 /// Along the way, as deep as a stroke goes at its speed, and each time again that it passes.
 double PointerDevice::State::paintsToMm(const Vec3& moved, double periodS) noexcept {
-    const auto across = [&](const Vec3& v) { return Vec3(v - wish.way * wish.way.dot(v)); };
     const double went = across(moved).norm();
     mmS += (went / periodS - mmS) * (1.0 - core::exp(-periodS / kSpeedS));
     pathMm += went;
@@ -319,7 +319,6 @@ void PointerDevice::State::press(const Vec3& wasWantedMm, double periodS) noexce
     const double back = 1.0 - core::exp(-periodS * kEndStiffer * settings.stiffnessNPerMm / b);
     const double part = 1.0 - core::exp(-periodS * k / b), mmPerN = part / k;
     const Vec3& way = wish.way;
-    const auto across = [&](const Vec3& v) { return Vec3(v - way * way.dot(v)); };
     if (!watches) {  // before the first tick has told it of its tip
         tipMm = positionMm;
         pressN.setZero();

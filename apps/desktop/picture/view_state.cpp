@@ -180,6 +180,7 @@ void ViewWidget::State::eyeMoved() {
     camera.mirrored = mirrorView;
     hideLandmarks();
     if (hand) hand->setEye(handsEye(), viewport());
+    if (drag == Drag::press && hand && !hand->isPressed()) end();
     if (drag == Drag::none) hoverAgain();
     if (cross) read(*cross);
     wish();

@@ -605,7 +605,7 @@
     </message>
     <message>
         <source>Choose an exercise: what it asks, the ideal, your best so far</source>
-        <translation>課題を選びます（内容、見本、これまでの最高点）</translation>
+        <translation>課題を選びます（内容、理想形、これまでの最高点）</translation>
     </message>
     <message>
         <source>Exercises</source>
@@ -9243,11 +9243,11 @@ lingual: %4</source>
     </message>
     <message>
         <source>Cutting the ideal</source>
-        <translation>見本を削っています</translation>
+        <translation>理想形を削っています</translation>
     </message>
     <message>
         <source>The ideal: drag to turn it</source>
-        <translation>見本：ドラッグで回転</translation>
+        <translation>理想形：ドラッグで回転</translation>
     </message>
     <message>
         <source>Tooth %1</source>
@@ -9322,7 +9322,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Cutting the ideal</source>
-        <translation>見本を削っています</translation>
+        <translation>理想形を削っています</translation>
     </message>
     <message>
         <source>Save the result</source>
@@ -9555,7 +9555,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>The ideal</source>
-        <translation>見本</translation>
+        <translation>理想形</translation>
     </message>
     <message>
         <source>Save as a page...</source>
@@ -9631,7 +9631,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>The ideal: drag to turn it</source>
-        <translation>見本：ドラッグで回転</translation>
+        <translation>理想形：ドラッグで回転</translation>
     </message>
     <message>
         <source>Your tooth: drag to turn it</source>
@@ -11374,7 +11374,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>Depth: %1, ideal: %2.</source>
-        <translation>深さ：%1（見本：%2）</translation>
+        <translation>深さ：%1（理想形：%2）</translation>
     </message>
     <message>
         <source>Depth: %1.</source>
@@ -11386,7 +11386,7 @@ lingual: %4</source>
     </message>
     <message>
         <source>ideal</source>
-        <translation>見本</translation>
+        <translation>理想形</translation>
     </message>
     <message>
         <source>uncut</source>

@@ -117,6 +117,7 @@ struct Scene {
     void tell(const Vec3& proxy, double depthMm) {
         messages::HapticSample sample;
         sample.tick = 1;
+        sample.timeS = timeS += 0.033;
         for (std::size_t k = 0; k < 3; ++k)
             sample.proxyPositionMm[k] = proxy[static_cast<int>(k)];
         sample.depthMm = depthMm;
@@ -126,6 +127,7 @@ struct Scene {
     std::shared_ptr<device::PointerMailbox> mailbox;
     std::shared_ptr<Felt> felt;
     PointerController hand;
+    double timeS = 0.0;  // told last: a picture every 33 ms
 };
 
 TEST(PointerController, theTipHoversHalfAMillimetreOffUnderThePointer) {
@@ -463,6 +465,44 @@ TEST(PointerController, frozenStaysAndGoesOnFromThere) {
     EXPECT_LT((s.tip() - before).norm(), 0.01);
     s.hand.move(pixel + Vec2(101, 0));
     EXPECT_LT((s.tip() - before).norm(), 0.1);
+}
+
+TEST(PointerController, anotherViewEndsTheStrokeAndAZoomUnderThePointerDoesNot) {
+    Scene s(planeMm);
+    const Vec2 pixel = s.pixel(Vec3::Zero());
+    s.hand.move(pixel);
+    s.hand.press(pixel, true);
+    const Vec3 before = s.tip();
+    s.tell(before, 0.1);
+    s.camera = view::zoomed(s.camera, kViewport, pixel, 1.25, before);
+    s.hand.setEye(s.camera, kViewport);
+    EXPECT_TRUE(s.hand.isPressed());
+    // Ten millimetres beside: the pointer would lead it across the tooth, or it would stay behind by as much.
+    s.camera.eyeMm += Vec3(10, 0, 0);
+    s.camera.targetMm += Vec3(10, 0, 0);
+    s.hand.setEye(s.camera, kViewport);
+    EXPECT_FALSE(s.hand.isPressed());
+    EXPECT_EQ(s.hand.target().farMm, 0.0);
+    s.tell(s.tip(), -0.5);
+    s.hand.move(pixel);
+    s.tell(s.tip(), -0.5);
+    EXPECT_NEAR(s.besides(pixel, s.tip()), 0.0, 0.5) << "it hovers under the pointer";
+    EXPECT_EQ(s.hand.target().pedal, 0.0);
+}
+
+TEST(PointerController, whyNothingIsCutIsToldAfterATimeHoweverFewThePictures) {
+    Scene s(planeMm);
+    const Vec2 pixel = s.pixel(Vec3::Zero());
+    s.hand.setPerPass(0.3);
+    s.hand.move(pixel);
+    s.hand.press(pixel, true);
+    const Vec3 end = s.tip() + s.hand.target().farMm * s.way();
+    s.tell(end, 0.1);
+    EXPECT_FALSE(s.hand.isIdleForLong());
+    s.timeS += 0.3;  // no picture meanwhile
+    s.tell(end, 0.1);
+    EXPECT_TRUE(s.hand.isIdleForLong());
+    EXPECT_EQ(s.hand.idle(), PointerController::Idle::passDone);
 }
 
 TEST(PointerController, escapeEndsEverythingAndTheNextMoveBringsItBack) {

@@ -115,8 +115,10 @@ void DrillFeature::addDocks() {
 
 void DrillFeature::connectCommands() {
     on(commands_[Command::undo], [this] {
-        undoesWhenOut_ = simulator_.status().inStroke;
-        if (!undoesWhenOut_) takeBack();
+        if (simulator_.status().inStroke || undosWhenOut_ > 0)
+            ++undosWhenOut_;
+        else
+            takeBack();
     });
     on(commands_[Command::redo], [this] { simulator_.redo(); });
     on(commands_[Command::reset], [this] {
@@ -272,7 +274,7 @@ void DrillFeature::takeBackNotices(const messages::HapticSample& sample) {
 }
 
 void DrillFeature::showDocument() {
-    undoesWhenOut_ = false;
+    undosWhenOut_ = 0;
     const bool isOpen = simulator_.tooth() && simulator_.toothCase();
     // Nobody cuts in a replay or a work that is looked at, nor before there is a tooth.
     welcome_->setAllowed(isOpen && simulator_.mode() == Simulator::Mode::liveSession &&
@@ -338,9 +340,9 @@ bool DrillFeature::isComingOut() const {
 void DrillFeature::showTick() {
     const messages::HapticSample& sample = simulator_.sample();
     const simulation::LiveSessionStatus& status = simulator_.status();
-    undoesWhenOut_ = undoesWhenOut_ && isComingOut();
-    if (undoesWhenOut_ && !status.inStroke && !status.restoring) {
-        undoesWhenOut_ = false;
+    if (!isComingOut()) undosWhenOut_ = 0;
+    if (undosWhenOut_ > 0 && !status.inStroke && !status.restoring) {
+        --undosWhenOut_;
         takeBack();
     }
     bar_->setActualSpeed(sample.speedRpm, (sample.flags & messages::kStalled) != 0);

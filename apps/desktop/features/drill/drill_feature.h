@@ -50,7 +50,7 @@ class DrillFeature : public Feature {
     bool wasOpen_ = false, wasCut_ = false;  ///< pulp and tooth, as last shown
     bool touching_ = false;
     bool hasMoved_ = false;                      ///< the mouse, over the picture
-    bool undoesWhenOut_ = false;                 ///< asked for while the bur comes out
+    int undosWhenOut_ = 0;                       ///< asked for while the bur comes out
     std::optional<WelcomeStrip::Step> gesture_;  ///< that is being dealt with: what moves the eye now
 };
 

@@ -30,8 +30,9 @@ constexpr double kLeastLeverMm = 1.0;  // of a rest: nearer to the tip nothing t
 constexpr double kStartAboveMm = 6.0;
 constexpr double kThereMm = 0.2;     // as near as that a bur has come to where it was to go
 constexpr double kStraightMm = 3.0;  // from so far away, at most, a press goes straight to its place
-constexpr int kMaxPictures = 30;     // about a second: then another way out is tried
-constexpr int kPatientPictures = 9;  // about 0.3 s without anything cut
+constexpr double kWayOutS = 1.0;     // then another way out is tried
+constexpr double kPatientS = 0.3;    // without anything cut
+constexpr double kEyeJumpPixels = 12.0;
 constexpr double kSameTurnRad = 1e-6;
 constexpr double kSameSight = 0.01;     // of two lines' directions: some six pixels
 constexpr double kLittleTurnRad = 0.3;  // turned by more a handpiece is taken out
@@ -92,11 +93,12 @@ struct PointerController::State {
     bool lifting = false, liftsTurning = false, travelling = false, regrips = false;
     Vec3 outMm = Vec3::Zero(), outWay = Vec3::UnitZ(), onWayMm = Vec3::Zero();
     Quat heldNow = own;  // as last told, or sent
-    int pictures = 0;
+    double liftedS = 0.0;
+    bool triesAgain = false;  // to come out, another way
 
     // Whether anything goes.
     double removedMm3 = 0.0;
-    int idlePictures = 0;
+    double nowS = 0.0, idleFromS = 0.0;  // as told
     bool waits = false, stalled = false;
 
     bool rebase = false;
@@ -110,6 +112,7 @@ struct PointerController::State {
     [[nodiscard]] Vec3 place() const { return proxyMm.value_or(sentMm); }
     [[nodiscard]] Leading leading() const { return {*feel, orientation}; }
     [[nodiscard]] double farMm() const { return camera.distanceMm() + 100.0; }
+    [[nodiscard]] bool isPatienceOver() const { return nowS - idleFromS >= kPatientS; }
     [[nodiscard]] bool isOnStroke() const { return !stroke || !sight || !sight->touchAt || sight->what == *stroke; }
     [[nodiscard]] bool presses() const {
         return pressed && !lifting && !travelling && !noReach && sight && sight->touchAt && isOnStroke();
@@ -292,14 +295,14 @@ void PointerController::State::lift() {
     outMm = from + std::min(alongBur, towardsEye) * outWay;
     lifting = true;
     liftsTurning = turning && clearMm(from) < 0.0;
-    pictures = 0;
+    liftedS = nowS;
+    triesAgain = false;
 }
 
 /// After a lift: where the pointer is by now.
 void PointerController::State::goOn() {
     lifting = false;
     tipMm = outMm;
-    pictures = 0;
     if (lastPixel && (pressed || sight)) aim(*lastPixel - lagPixels);
 }
 
@@ -364,6 +367,12 @@ void PointerController::setEye(const view::Camera& camera, const view::Viewport&
                       camera.up == s.camera.up && camera.fieldOfViewRad == s.camera.fieldOfViewRad &&
                       viewport.width == s.viewport.width && viewport.height == s.viewport.height;
     if (same) return;
+    if (s.pressed && !s.frozen) {
+        // The pointer is over something else by then: the stroke is over.
+        const auto before = view::pixelOf(s.camera, s.viewport, s.place()),
+                   now = view::pixelOf(camera, viewport, s.place());
+        if (!before || !now || (*now - *before).norm() > kEyeJumpPixels) release();
+    }
     s.camera = camera;
     s.viewport = viewport;
     s.rebase = s.pressed;
@@ -386,19 +395,20 @@ void PointerController::follow(const messages::HapticSample& sample) {
     for (const double v : sample.removedMm3)
         removed += v;
     const bool cuts = removed > std::exchange(s.removedMm3, removed);
-    s.idlePictures = s.pressed && !cuts ? s.idlePictures + 1 : 0;
+    s.nowS = sample.timeS;
+    if (!s.pressed || cuts || s.idleFromS > s.nowS) s.idleFromS = s.nowS;
     if (s.frozen || s.away) return;
     // A tooth that was put back holds no bur that stands in it: out first.
     if (s.waits && s.pressed && !s.lifting) s.lift();
     if (s.lifting) {
-        ++s.pictures;
+        const double sinceS = s.nowS - s.liftedS;
         if ((p - s.outMm).norm() < kThereMm) {
             s.goOn();
-        } else if (s.pictures == kMaxPictures && s.sight && s.feel) {
+        } else if (sinceS > 2.0 * kWayOutS) {
+            s.goOn();
+        } else if (sinceS > kWayOutS && s.sight && s.feel && !std::exchange(s.triesAgain, true)) {
             s.outWay = -s.sight->ray.direction;
             s.outMm = p + s.leading().wayOutMm(p, s.outWay, kHoverMm) * s.outWay;
-        } else if (s.pictures > 2 * kMaxPictures) {
-            s.goOn();
         }
     } else if (s.travelling) {
         if (s.lastPixel && s.sight)
@@ -449,7 +459,7 @@ void PointerController::press(const Vec2& pixel, bool turning) {
     State& s = *state_;
     s.turning = turning;
     if (!s.pressed) {
-        s.idlePictures = 0;
+        s.idleFromS = s.nowS;
         s.pressed = true;
         s.stroke.reset();
         if (s.feel) s.feel->beginStroke();
@@ -621,7 +631,7 @@ PointerController::Idle PointerController::idle() const noexcept {
     if (s.lifting || s.travelling) return Idle::onItsWay;
     if (!s.sight || !s.sight->touchAt) return Idle::offTooth;
     if (!s.isOnStroke()) return Idle::offStroke;
-    if (s.idlePictures >= kPatientPictures) {
+    if (s.isPatienceOver()) {
         if (s.stalled) return Idle::stalled;
         const double end = std::min(s.sight->endAt, s.endHereMm);
         if ((s.place() - s.sight->ray.originMm).dot(s.sight->ray.direction) > end - kThereMm)
@@ -633,7 +643,7 @@ PointerController::Idle PointerController::idle() const noexcept {
     return s.touching ? Idle::no : Idle::onItsWay;
 }
 bool PointerController::isIdleForLong() const noexcept {
-    return idle() != Idle::no && state_->idlePictures >= kPatientPictures;
+    return idle() != Idle::no && state_->isPatienceOver();
 }
 double PointerController::loadN() const noexcept {
     return state_->loadN;

@@ -52,7 +52,8 @@ class PointerController {
     /// With every tooth and bur. Without it there is no tooth.
     void setFeel(std::shared_ptr<HandFeel> feel);
 
-    /// Before every other call when the eye has moved.
+    /// Before every other call when the eye has moved. A stroke ends when that takes the bur from under the pointer by
+    /// more than a few pixels (another view; not the wheel, nor while the view is being turned).
     void setEye(const view::Camera& camera, const view::Viewport& viewport);
     /// Where the bur is by now (the proxy): the press begins there, nudges go from there, and whether there is tooth to
     /// press on is looked up there. With every picture: a bur that has slipped off the tooth is held no sooner.

@@ -25,7 +25,7 @@ THIRD_PARTY = {
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
     r"pybind11/|Python\.h": r"apps/python/.*",
     r"httplib\.h": r"apps/school/(http\.h|\w+\.cpp)|tests/school/.*",
-    r"nlohmann/": r"apps/(cli|studies|school|python)/.*|src/handpiece/app/\w+/\w+\.cpp|bench/.*|tests/(app|school)/.*",
+    r"nlohmann/": r"apps/(cli|studies|school|python)/.*|src/handpiece/app/\w+/\w+\.cpp|src/handpiece/base/config/outside_json\.cpp|bench/.*|tests/(app|school)/.*|tests/base/config/outside_json_test\.cpp",
     r"gtest/|gmock/|rapidcheck|mpfr\.h": r"tests/.*",
     r"benchmark/": r"bench/.*",
     r"ccd/|fcl/": r"tests/.*|bench/.*",

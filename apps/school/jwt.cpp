@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/content_files.h"
@@ -82,7 +83,8 @@ std::optional<Bytes> decoded(std::string_view text) {
 }
 Json jsonIn(std::string_view part, const char* what) {
     const auto bytes = decoded(part);
-    Json json = bytes ? Json::parse(bytes->begin(), bytes->end(), nullptr, false) : Json(Json::value_t::discarded);
+    Json json = bytes ? config::outsideJson<Json>({reinterpret_cast<const char*>(bytes->data()), bytes->size()})
+                      : Json(Json::value_t::discarded);
     if (!json.is_object()) throw damaged(what);
     return json;
 }
@@ -196,7 +198,7 @@ std::string claimsOf(std::string_view token, std::string_view keySet) {
     const auto signature = decoded(token.substr(second + 1));
     if (!signature) throw damaged("its signature is none");
 
-    const Json keys = keySet.size() > kMostKeySet ? Json() : Json::parse(keySet, nullptr, false);
+    const Json keys = keySet.size() > kMostKeySet ? Json() : config::outsideJson<Json>(keySet);
     const auto list = keys.is_object() ? keys.find("keys") : keys.end();
     if (!keys.is_object() || list == keys.end() || !list->is_array())
         throw core::Error("the platform's keys cannot be read", "key set", "check its address").as("token-key");

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/app/statements/statements.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
 #include "school/elsewhere.h"
@@ -150,7 +151,7 @@ std::string bearerOf(const school::LtiPlatform& platform, const RsaKey& key, Mil
                          {"scope", kScoreScope}};
     const Elsewhere answer =
         post(platform.tokenAddress, httplib::detail::params_to_query_str(form), "application/x-www-form-urlencoded");
-    const Json json = Json::parse(answer.body, nullptr, false);
+    const Json json = config::outsideJson<Json>(answer.body);
     const std::string token = answer.status == 200 ? text(json, "access_token") : std::string();
     if (token.empty() || token.size() > 8000 ||
         std::any_of(token.begin(), token.end(), [](char c) { return static_cast<unsigned char>(c) <= 0x20; }))
@@ -210,7 +211,7 @@ Launch takeLaunch(Books& books, const std::string& token, const std::string& sta
         // It may have new keys.
         claims = claimsOf(token, keySets().of(platform->keysAddress, true, now));
     }
-    const Json c = Json::parse(claims);
+    const Json c = config::requireOutsideJson<Json>(claims);
     requireClaims(c, *platform, begun->nonceHash, now);
     Launch launch{personOf(lti, c), "/classes"};
     const std::string id = text(at(c, std::string(kClaim) + "custom"), "assignment");

@@ -11,6 +11,7 @@
 
 #include "handpiece/app/marking/returned_marks.h"
 #include "handpiece/app/report/assessment_words.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 
@@ -191,7 +192,7 @@ std::string sheetJson(const Fields& fields) {
 
 Fields parseSheet(const std::string& json) {
     Fields fields;
-    const nlohmann::json read = nlohmann::json::parse(json, nullptr, false);
+    const nlohmann::json read = config::outsideJson<nlohmann::json>(json);
     if (!read.is_object()) return fields;
     for (const auto& [name, value] : read.items())
         if (value.is_string()) fields.emplace(name, value.get<std::string>());

@@ -11,6 +11,7 @@
 #include "handpiece/app/report/plot.h"
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/assess/standard/standard.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/store/teaching.h"
 #include "school/teaching.h"
@@ -234,7 +235,7 @@ Page standardPage(const Visit& v, const Assigned& of, bool showsAll, const Told&
 std::vector<std::pair<std::string, std::string>> keptStandards(const Visit& v, const std::string& assignment) {
     std::vector<std::pair<std::string, std::string>> lines;
     for (const school::KeptStandard& one : Teaching(v.books).standards(assignment)) {
-        const nlohmann::json json = nlohmann::json::parse(one.content, nullptr, false);
+        const nlohmann::json json = config::outsideJson<nlohmann::json>(one.content);
         if (!json.is_object() || !json.value("cut_percent", nlohmann::json()).is_number()) continue;
         std::string text = fmt::format("{:.1f} %", json["cut_percent"].get<double>());
         if (const auto interval = json.find("interval_percent");

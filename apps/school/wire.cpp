@@ -7,12 +7,15 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/base/config/outside_json.h"
+
 namespace handpiece::school_wire {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kMostText = 4000, kMostResult = 3 << 20, kMostList = 200, kMostTasks = 2000;
+constexpr std::size_t kMostText = 4000, kMostResult = 3 << 20, kMostList = 200, kMostTasks = 2000,
+                      kMostValues = 100'000;
 constexpr double kMostNumber = 1e12;
 
 /// A message from somebody: every field is looked at before it is used.
@@ -20,7 +23,7 @@ class Message {
   public:
     explicit Message(std::string_view text) {
         if (text.size() > kMostMessage) fail("message", "is too long");
-        json_ = Json::parse(text, nullptr, false);
+        json_ = config::outsideJson<Json>(text, {.values = kMostValues});
         if (!json_.is_object()) fail("message", "is no JSON object");
     }
     [[nodiscard]] bool has(const char* key) const { return json_.contains(key); }

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash_text.h"
@@ -245,7 +246,7 @@ bool comesBefore(const std::string& a, const std::string& b) {
 }  // namespace
 
 score::Result parseResult(std::string_view text, const std::string& where) {
-    const Json parsed = Json::parse(text, nullptr, false);
+    const Json parsed = config::outsideJson<Json>(text);
     if (parsed.is_discarded())
         throw core::Error("this is no result of a score, nor JSON", where,
                           "give a result.json as handpiece score writes it");

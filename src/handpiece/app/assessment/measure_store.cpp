@@ -5,6 +5,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -130,7 +131,7 @@ std::optional<MeasuredWork> decodeMeasures(std::string_view text, const StoreKey
         text.substr(kHead.size(), kHashDigits) != hashOf(text.substr(from)))
         return {};
     try {
-        const Json json = Json::parse(text.substr(from));
+        const Json json = config::requireOutsideJson<Json>(text.substr(from));
         if (json.at("key") != keyJson(key)) return {};
         MeasuredWork work;
         work.identity.exercise = json.at("exercise").get<std::string>();

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/app/marking/desk.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::marking {
@@ -186,7 +187,7 @@ DeskState parseDesk(std::string_view text, const std::string& where) {
     };
     if (text.size() > kMaxDeskBytes) throw wrong("it is larger than 64 MiB");
     try {
-        const Json json = Json::parse(text);
+        const Json json = config::requireOutsideJson<Json>(text, {.keys = 20'000});
         if (json.at("handpiece").get<std::string>() != "marking") throw wrong("it is something else");
         if (const int format = countIn(json.at("format")); format > kFormat)
             throw core::Error(fmt::format("this desk has format {}, and this program reads {}", format, kFormat), where,

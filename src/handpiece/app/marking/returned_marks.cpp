@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash_text.h"
 
@@ -183,7 +184,7 @@ ReturnedMarks parseReturned(std::string_view text, const std::string& where) {
     };
     if (text.size() > kMaxReturnedBytes) throw wrong("it is larger than 4 MiB");
     try {
-        const Json json = Json::parse(text);
+        const Json json = config::requireOutsideJson<Json>(text);
         if (json.at("handpiece").get<std::string>() != kReturnedKind) throw wrong("it is something else");
         const auto* const format = json.at("format").get_ptr<const Json::number_integer_t*>();
         if (format == nullptr || *format < 1) throw wrong("its format is none");

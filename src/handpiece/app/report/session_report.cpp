@@ -15,6 +15,7 @@
 #include "handpiece/app/report/page_png.h"
 #include "handpiece/app/report/plot.h"
 #include "handpiece/app/report/report_figures.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 
@@ -117,7 +118,7 @@ std::string timePlot(const std::vector<simulation::PlotPoint>& points, float sim
 
 /// {"removed_mm3": 2.9} as "removed mm3 2.9"; what is no such object as it is.
 std::string readable(const std::string& text) {
-    const auto json = nlohmann::ordered_json::parse(text, nullptr, false);
+    const auto json = config::outsideJson<nlohmann::ordered_json>(text);
     if (!json.is_object()) return text;
     std::string all;
     for (const auto& [key, value] : json.items()) {
@@ -151,7 +152,7 @@ void addEvents(HtmlReport& page, const simulation::SessionPlayer& player) {
                         ? words()("session.resumed-after-its-end", now.bur->name(), resumption.stateHash)
                         : words()("session.resumed-after-a-pause", now.bur->name(), resumption.stateHash);
         } else if (e.name == session::nameOf(session::EventName::scheduling)) {
-            const auto json = nlohmann::ordered_json::parse(e.text, nullptr, false);
+            const auto json = config::outsideJson<nlohmann::ordered_json>(e.text);
             const std::string id =
                 "scheduling.class." + (json.is_object() && json.contains("class") && json["class"].is_string()
                                            ? json["class"].get<std::string>()

@@ -9,6 +9,7 @@
 
 #include "handpiece/app/simulation/cut_session.h"
 #include "handpiece/app/simulation/history_bytes.h"
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/case_bytes.h"
 #include "handpiece/model/tooth/state_file.h"
@@ -493,7 +494,7 @@ struct SessionPlayer::State {
         const auto frame = reader.keyFrameBefore(lastTick);
         for (auto e = events.rbegin(); e != events.rend(); ++e) {
             if (!isNamed(*e, EventName::end) || (frame && frame->tick > e->tick)) continue;
-            const auto end = nlohmann::json::parse(e->text, nullptr, false);
+            const auto end = config::outsideJson<nlohmann::json>(e->text);
             if (!end.is_object() || !end.contains("state_hash") || !end["state_hash"].is_string())
                 throw core::Error("the event that ends the session is damaged", where);
             return Told{e->tick, end["state_hash"].get<std::string>()};

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <utility>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/held_aside.h"
@@ -337,7 +338,7 @@ Resumption resumptionFromJson(const std::string& text, const std::string& where)
     Resumption resumption;
     std::string settings;
     reading(where, [&] {
-        const Json json = Json::parse(text);
+        const Json json = config::requireOutsideJson<Json>(text);
         json.at("state_hash").get_to(resumption.stateHash);
         json.at("recovered").get_to(resumption.isRecovered);
         settings = json.at("settings").dump();
@@ -365,7 +366,7 @@ Changed applyChange(const std::string& text, SimulationSettings& settings, const
     Changed changed;
     SimulationSettings next = settings;
     reading(where, [&] {
-        const Json json = Json::parse(text);
+        const Json json = config::requireOutsideJson<Json>(text);
         const Read read{json};
         if ((changed.work = json.contains("outline_mm"))) {
             next.bur = burFrom(json);
@@ -389,7 +390,7 @@ Changed applyChange(const std::string& text, SimulationSettings& settings, const
 SimulationSettings settingsFromJson(const std::string& text, const std::string& where) {
     SimulationSettings s;
     reading(where, [&] {
-        const Json json = Json::parse(text);
+        const Json json = config::requireOutsideJson<Json>(text);
         const Read read{json};
         s.rateHz = json.at("rate_hz");
         s.field.voxelMm = json.at("field").at("voxel_mm");

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/base/config/outside_json.h"
+
 namespace handpiece::simulation {
 
 std::string workingWayJson(const WorkingWay& way) {
@@ -15,7 +17,7 @@ std::string workingWayJson(const WorkingWay& way) {
 }
 
 WorkingWay workingWayFromJson(const std::string& text) {
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = config::outsideJson<nlohmann::json>(text);
     if (!json.is_object()) return {};
     const auto says = [&](const char* key) {
         return json.contains(key) && json[key].is_boolean() && json[key].get<bool>();

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/hash_text.h"
@@ -117,7 +118,7 @@ class Writer {
         const auto damaged = [&](const char* why) -> core::Error {
             return {why, fmt::format("marks of attempt {}", work.attempt.id), "have them returned once more"};
         };
-        const Json marks = Json::parse(returned.marks, nullptr, false);
+        const Json marks = config::outsideJson<Json>(returned.marks);
         if (!marks.is_object()) throw damaged("they are no marks");
         const auto number = [&](const char* key) {
             const auto found = marks.find(key);

@@ -59,6 +59,7 @@ class Desk:
     def start(self, arguments=()):
         """The program, its window over the whole screen."""
         self.map_file.unlink(missing_ok=True)
+        self.begun = time.monotonic()
         with open(self.errors or os.devnull, "ab") as told:
             self.app = subprocess.Popen([str(self.program), *map(str, arguments)], env=self.environment,
                                         stderr=told if self.errors else None)

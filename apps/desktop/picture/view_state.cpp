@@ -274,6 +274,8 @@ static QString idleText(input::PointerController::Idle idle) {
             return ViewWidget::tr("The bur is on its way");
         case Idle::stalled:
             return ViewWidget::tr("The bur is stalled: press less");
+        case Idle::hurries:
+            return ViewWidget::tr("So quickly it cuts next to nothing: go slower, or press more");
         case Idle::held:
             return ViewWidget::tr("The bur does not cut here: press more, or take another bur");
     }

@@ -7727,6 +7727,10 @@ lingual: %4</source>
         <translation>指標点を歯の上でドラッグするか、選んだものを矢印キーで動かします</translation>
     </message>
     <message>
+        <source>So quickly it cuts next to nothing: go slower, or press more</source>
+        <translation>速すぎてほとんど削れません。ゆっくり動かすか、強く押してください</translation>
+    </message>
+    <message>
         <source>As deep as one pass goes: let go and press again to go deeper</source>
         <translation>1回の深さに達しました。さらに深く削るには、放してもう一度押してください</translation>
     </message>

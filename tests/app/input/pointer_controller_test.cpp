@@ -505,6 +505,23 @@ TEST(PointerController, whyNothingIsCutIsToldAfterATimeHoweverFewThePictures) {
     EXPECT_EQ(s.hand.idle(), PointerController::Idle::passDone);
 }
 
+TEST(PointerController, aScribbleIsToldThatItCutsNextToNothing) {
+    for (const double mmS : {3.0, 40.0}) {
+        Scene s(planeMm);
+        const Vec2 pixel = s.pixel(Vec3::Zero());
+        s.hand.move(pixel);
+        s.hand.press(pixel, true);
+        const Vec3 at = s.tip();
+        bool isTold = false;
+        for (int i = 0; i < 60; ++i) {
+            // To and fro, with every picture.
+            s.tell(at + Vec3(i % 2 == 0 ? 0.033 * mmS : 0.0, 0, 0), i % 3 == 0 ? 0.0 : 0.1);
+            isTold = isTold || (s.hand.isIdleForLong() && s.hand.idle() == PointerController::Idle::hurries);
+        }
+        EXPECT_EQ(isTold, mmS > 10.0) << mmS << " mm/s";
+    }
+}
+
 TEST(PointerController, escapeEndsEverythingAndTheNextMoveBringsItBack) {
     Scene s(planeMm);
     const Vec2 pixel = s.pixel(Vec3::Zero());

@@ -33,6 +33,7 @@ constexpr double kStraightMm = 3.0;  // from so far away, at most, a press goes 
 constexpr double kWayOutS = 1.0;     // then another way out is tried
 constexpr double kPatientS = 0.3;    // without anything cut
 constexpr double kEyeJumpPixels = 12.0;
+constexpr double kLittleMm = 0.05, kHurryS = 1.0, kSpeedS = 0.3;  // a stroke so shallow, for so long; its speed's mean
 constexpr double kSameTurnRad = 1e-6;
 constexpr double kSameSight = 0.01;     // of two lines' directions: some six pixels
 constexpr double kLittleTurnRad = 0.3;  // turned by more a handpiece is taken out
@@ -98,7 +99,8 @@ struct PointerController::State {
 
     // Whether anything goes.
     double removedMm3 = 0.0;
-    double nowS = 0.0, idleFromS = 0.0;  // as told
+    double nowS = 0.0, idleFromS = 0.0, hurriesFromS = 0.0;  // as told
+    double mmS = 0.0;
     bool waits = false, stalled = false;
 
     bool rebase = false;
@@ -113,6 +115,7 @@ struct PointerController::State {
     [[nodiscard]] Leading leading() const { return {*feel, orientation}; }
     [[nodiscard]] double farMm() const { return camera.distanceMm() + 100.0; }
     [[nodiscard]] bool isPatienceOver() const { return nowS - idleFromS >= kPatientS; }
+    [[nodiscard]] bool hurries() const { return nowS - hurriesFromS >= kHurryS; }
     [[nodiscard]] bool isOnStroke() const { return !stroke || !sight || !sight->touchAt || sight->what == *stroke; }
     [[nodiscard]] bool presses() const {
         return pressed && !lifting && !travelling && !noReach && sight && sight->touchAt && isOnStroke();
@@ -383,7 +386,6 @@ void PointerController::follow(const messages::HapticSample& sample) {
     const Vec3 p(sample.proxyPositionMm[0], sample.proxyPositionMm[1], sample.proxyPositionMm[2]);
     if (!p.allFinite() || sample.tick == 0) return;  // nothing told yet
     State& s = *state_;
-    s.proxyMm = p;
     const auto& q = sample.proxyOrientation;
     const Quat turn(q[0], q[1], q[2], q[3]);
     if (std::abs(turn.squaredNorm() - 1.0) < 0.1) s.heldNow = turn.normalized();
@@ -395,7 +397,12 @@ void PointerController::follow(const messages::HapticSample& sample) {
     for (const double v : sample.removedMm3)
         removed += v;
     const bool cuts = removed > std::exchange(s.removedMm3, removed);
+    if (const double dtS = sample.timeS - s.nowS; dtS > 0.0)
+        s.mmS += ((p - s.place()).norm() / dtS - s.mmS) * (1.0 - std::exp(-dtS / kSpeedS));
+    s.proxyMm = p;
     s.nowS = sample.timeS;
+    const bool isLittle = device::kPaintMm2SPerN * s.loadN < kLittleMm * s.mmS;
+    if (!isLittle || !s.presses() || s.hurriesFromS > s.nowS) s.hurriesFromS = s.nowS;
     if (!s.pressed || cuts || s.idleFromS > s.nowS) s.idleFromS = s.nowS;
     if (s.frozen || s.away) return;
     // A tooth that was put back holds no bur that stands in it: out first.
@@ -638,12 +645,14 @@ PointerController::Idle PointerController::idle() const noexcept {
             return s.sight->end == LineOfSight::End::atStop     ? Idle::atStop
                    : s.sight->end == LineOfSight::End::passDone ? Idle::passDone
                                                                 : Idle::through;
-        if (s.touching) return Idle::held;
+        if (s.touching && !s.hurries()) return Idle::held;
     }
+    if (s.hurries()) return Idle::hurries;
     return s.touching ? Idle::no : Idle::onItsWay;
 }
 bool PointerController::isIdleForLong() const noexcept {
-    return idle() != Idle::no && state_->isPatienceOver();
+    const Idle why = idle();
+    return why == Idle::hurries || (why != Idle::no && state_->isPatienceOver());
 }
 double PointerController::loadN() const noexcept {
     return state_->loadN;

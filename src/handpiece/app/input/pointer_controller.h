@@ -107,10 +107,11 @@ class PointerController {
         through,    ///< no deeper here: beyond it comes out of the tooth
         onItsWay,   ///< through the air: down to the tooth, over an edge, out of a tooth that was put back round it
         stalled,    ///< the drive stands
+        hurries,    ///< it cuts, and so quickly that it cuts next to nothing
         held,       ///< nothing gives way: what it touches cannot be cut with this bur, or the load is too small
     };
     [[nodiscard]] Idle idle() const noexcept;
-    [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down
+    [[nodiscard]] bool isIdleForLong() const noexcept;  ///< longer than it takes to come down, or to pass once
     [[nodiscard]] double loadN() const noexcept;
     [[nodiscard]] std::optional<double> stopMm() const noexcept;
     [[nodiscard]] std::optional<double> perPassMm() const noexcept;

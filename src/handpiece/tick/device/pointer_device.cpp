@@ -42,9 +42,8 @@ constexpr double kOverLoad = 0.05;  // of the load, more: then it only gives way
 constexpr double kStepShare = 0.08, kUsualPeriodS = 1e-3;
 // A tip that is left so far behind the pointer begins to come up, and so much farther it is over it [judgements].
 constexpr double kBehindMm = 0.1, kUpMm = 0.4, kOverMm = 0.1;
-// A stroke of that speed goes so deep, or it would be the deeper the longer it lasts: what 1 N cuts of enamel while it
-// passes [judgement]. Its speed is the mean of so long; a shorter stroke than that has no second pass.
-constexpr double kPaintMm2SPerN = 0.5, kSpeedS = 0.1, kLeastStrokeMm = 0.3;
+// A stroke's speed is the mean of so long; a shorter stroke than that has no second pass.
+constexpr double kSpeedS = 0.1, kLeastStrokeMm = 0.3;
 
 /// What the hand is asked to do, once it has been found to make sense.
 struct Wish {

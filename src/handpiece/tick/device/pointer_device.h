@@ -34,6 +34,10 @@ struct PointerTarget {
 };
 using PointerMailbox = rt::TripleBuffer<PointerTarget>;
 
+/// A stroke goes as deep as this times its load, by its speed, or it would be the deeper the longer it lasts: what 1 N
+/// cuts of enamel while it passes [judgement].
+inline constexpr double kPaintMm2SPerN = 0.5;
+
 /// A hand in one of two ways.
 ///
 /// Without a load it is in two parts: where it wants to be, which follows the pointer smoothly and within its speed,

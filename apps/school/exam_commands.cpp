@@ -16,6 +16,7 @@
 #include "handpiece/model/case/exercise.h"
 #include "handpiece/school/exam/lines.h"
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/books_accounts.h"
 #include "school/commands.h"
 #include "school/exam_arrival.h"
 #include "school/exam_desk.h"
@@ -37,7 +38,7 @@ using school::ExamBooks;
 using school::Milliseconds;
 
 struct ExamOptions {
-    std::string data, database, schoolClass, exercise, title, opens, exam, person;
+    std::string data, database, schoolClass, exercise, title, opens, exam, person, station;
     double hours = 2.0;
     int minutes = 30, extra = 0, pause = 0;
     std::vector<std::string> locked, allowed, recordings;
@@ -121,6 +122,21 @@ void setInvigilator(const ExamOptions& o) {
     const std::string pin = school::newStationCode();
     ExamBooks(books).set(school::ExamInvigilator{o.exam, o.person, school::hashOfPassword(pin)}, now());
     fmt::print("{} {}\n", o.person, pin);
+}
+
+void releaseStation(const ExamOptions& o) {
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
+    std::vector<school::Station> found;
+    for (school::Station& one : school::BooksAccounts(books).stations())
+        if (one.kind == "exam" && one.revoked == 0 && (one.id == o.station || one.name == o.station))
+            found.push_back(std::move(one));
+    if (found.size() != 1)
+        throw core::Error(found.empty() ? "no station is enrolled for exams by that id or name"
+                                        : "several stations for exams have that name",
+                          o.station, "see the office's page of stations, and give its id");
+    books.releaseForExams(found.front().id, now());
+    fmt::print("{} may hold exams\n", found.front().name);
 }
 
 void sign(const ExamOptions& o) {
@@ -287,6 +303,11 @@ void addServersExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opti
     invigilator.option("PERSON", o.person, "their code").required();
     invigilator.callback([options] { setInvigilator(*options); });
 
+    cli::Command releases = top.subcommand("release", "From now on an enrolled station may hold exams" + where);
+    books(releases);
+    releases.option("STATION", o.station, "its id or its name").required();
+    releases.callback([options] { releaseStation(*options); });
+
     cli::Command signs = top.subcommand("sign", "Signs it as it is now: stations fetch it" + where);
     books(signs);
     signs.option("EXAM", o.exam, "its id").required();
@@ -302,7 +323,7 @@ void addServicesExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     cli::Command enrol = top.subcommand("enrol", "This station may hold exams of a school" + where);
     service(enrol);
     enrol.option("SERVER", o.server, "its address, as https://school.example:8620").required();
-    enrol.option("CODE", o.code, "a one-time code: handpiece school code").required();
+    enrol.option("CODE", o.code, "a one-time code: handpiece school code --exam").required();
     enrol.callback([options] { school_exam::enrolForExams(options->server, options->code, options->service); });
     cli::Command fetches = top.subcommand("fetch", "Fetches the exams that can still be begun" + where);
     service(fetches);

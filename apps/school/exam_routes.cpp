@@ -14,6 +14,20 @@ namespace handpiece::school_server {
 using httplib::Request;
 using httplib::Response;
 
+namespace {
+core::Error notForExams(const school::Station& station, const char* what) {
+    return core::Error("this station may hold no exams", station.name, what).as("exam-station", {station.name});
+}
+/// A practice station's key opens nothing of an exam.
+StationHandler released(StationHandler handler) {
+    return [handler = std::move(handler)](const Request& request, Response& response, const school::Station& station) {
+        if (!station.mayHoldExams())
+            throw notForExams(station, "an administrator releases it: handpiece school exam release");
+        handler(request, response, station);
+    };
+}
+}  // namespace
+
 std::vector<Entry> examRoutes(Service* of) {
     const auto page = [of](Page (*shown)(const Visit&, const std::string&, const std::filesystem::path&)) {
         return Shown([of, shown](const Request& request, const Visit& visit) {
@@ -32,11 +46,13 @@ std::vector<Entry> examRoutes(Service* of) {
          })},
         {"POST", "/api/v1/exams/station",
          StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+             if (station.kind != "exam")
+                 throw notForExams(station, "enrol it by a code for exams: handpiece school code --exam");
              auto open = of->books.take();
              school::ExamBooks(*open).addKey(station.id, request.body.substr(0, 100), of->clock());
              response.set_content(examKey(of->settings.data).open, "text/plain");
          })},
-        {"GET", "/api/v1/exams", StationHandler([of](const Request&, Response& response, const school::Station&) {
+        {"GET", "/api/v1/exams", released([of](const Request&, Response& response, const school::Station&) {
              auto open = of->books.take();
              school::ExamBooks exams(*open);
              std::string all;
@@ -45,14 +61,14 @@ std::vector<Entry> examRoutes(Service* of) {
              response.set_content(all, "text/plain");
          })},
         {"GET", "/api/v1/exams/([0-9A-Za-z._-]{1,64})/pack",
-         StationHandler([of](const Request& request, Response& response, const school::Station&) {
+         released([of](const Request& request, Response& response, const school::Station&) {
              auto open = of->books.take();
              const auto pack = school::ExamBooks(*open).newestPack(request.matches[1]);
              if (!pack) throw core::Error("there is no such exam", request.matches[1].str()).as("books-unknown");
              response.set_content(exam::joined({pack->text, {pack->key, pack->signature}}), "text/plain");
          })},
         {"GET", "/api/v1/exams/([0-9A-Za-z._-]{1,64})/exercise",
-         StationHandler([of](const Request& request, Response& response, const school::Station&) {
+         released([of](const Request& request, Response& response, const school::Station&) {
              auto open = of->books.take();
              const auto pack = school::ExamBooks(*open).newestPack(request.matches[1]);
              if (!pack) throw core::Error("there is no such exam", request.matches[1].str()).as("books-unknown");
@@ -62,19 +78,19 @@ std::vector<Entry> examRoutes(Service* of) {
                                   "application/octet-stream");
          })},
         {"GET", "/api/v1/exams/chain",
-         StationHandler([of](const Request&, Response& response, const school::Station& station) {
+         released([of](const Request&, Response& response, const school::Station& station) {
              auto open = of->books.take();
              const school::ExamBooks::End end = school::ExamBooks(*open).endOf(station.id);
              response.set_content(fmt::format("{} {}\n", end.number, end.hash.empty() ? "-" : end.hash), "text/plain");
          })},
         {"POST", "/api/v1/exams/chain",
-         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+         released([of](const Request& request, Response& response, const school::Station& station) {
              auto open = of->books.take();
              const bool isNew = takeEntry(*open, station.id, request.body, of->clock());
              answer(response, "{}", isNew ? 201 : 200);
          })},
         {"GET", "/api/v1/exams/sittings/([0-9a-f]{32})/receipt",
-         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
+         released([of](const Request& request, Response& response, const school::Station& station) {
              auto open = of->books.take();
              response.set_content(
                  receiptFor(*open, station.id, request.matches[1], examKey(of->settings.data), of->clock()),

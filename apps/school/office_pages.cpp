@@ -427,16 +427,27 @@ Page stationsPage(const Visit& v, const std::string& shown) {
     std::vector<std::vector<Cell>> rows;
     for (const school::Station& one : stations)
         rows.push_back({{one.name},
+                        {one.kind != "exam"  ? "\u2013"
+                         : one.released == 0 ? word("exams-unreleased")
+                                             : words()("school-office.exams-since", report::momentOf(one.released))},
                         {report::momentOf(one.enrolled)},
                         {one.revoked > 0 ? report::momentOf(one.revoked) : "\u2013"},
                         {one.id}});
     if (rows.empty())
         page.paragraph(word("no-stations"), Tone::missing);
     else
-        page.linkedTable({word("station"), word("enrolled"), word("revoked"), word("code")}, rows);
+        page.linkedTable({word("station"), word("exams"), word("enrolled"), word("revoked"), word("code")}, rows);
     const FormField token = report::tokenField(lookerOf(v));
     page.heading(word("new-station"));
-    page.form({"/office/stations", {token, required(field("name", word("station-name")))}, {{word("station-do")}}});
+    FormField forExams{"exams", word("for-exams"), "checkbox"};
+    forExams.hint = word("for-exams-hint");
+    page.form(
+        {"/office/stations", {token, required(field("name", word("station-name"))), forExams}, {{word("station-do")}}});
+    for (const school::Station& one : stations)
+        if (one.revoked == 0 && one.kind == "exam" && one.released == 0)
+            page.form({"/office/stations/" + one.id + "/release",
+                       {token},
+                       {{words()("school-office.release-do", one.name)}}});
     for (const school::Station& one : stations)
         if (one.revoked == 0)
             page.form({"/office/stations/" + one.id + "/revoke",
@@ -450,8 +461,20 @@ Page addStationCode(const Visit& v, const Sent& sent) {
     return tried(
         [&] {
             const std::string code = school::newStationCode();
-            v.books.offerCode(code, sent("name"), v.now + kDay, actOf(v));
-            return stationsPage(v, words()("school-office.station-shown", code, code));
+            const bool isForExams = !sent("exams").empty();
+            v.books.offerCode(code, sent("name"), v.now + kDay, actOf(v), isForExams ? "exam" : "practice");
+            return stationsPage(v, isForExams ? words()("school-office.exam-station-shown", code, code)
+                                              : words()("school-office.station-shown", code, code));
+        },
+        [&](const std::string& wrong) { return stationsPage(v, wrong); });
+}
+
+Page releaseStation(const Visit& v, const std::string& id) {
+    if (!mayManage(v, Action::manageStations)) return notYours();
+    return tried(
+        [&] {
+            v.books.releaseForExams(id, actOf(v));
+            return back("/office/stations");
         },
         [&](const std::string& wrong) { return stationsPage(v, wrong); });
 }

@@ -32,6 +32,7 @@ using Sent = std::function<std::string(const char*)>;
 [[nodiscard]] Page changeClass(const Visit& visit, const std::string& id, const std::string& what, const Sent& sent);
 [[nodiscard]] Page stationsPage(const Visit& visit, const std::string& shown = {});
 [[nodiscard]] Page addStationCode(const Visit& visit, const Sent& sent);
+[[nodiscard]] Page releaseStation(const Visit& visit, const std::string& id);
 [[nodiscard]] Page revokeStation(const Visit& visit, const std::string& id);
 /// Of oneself unless one may see all.
 [[nodiscard]] Page auditPage(const Visit& visit, const std::string& before, const std::string& about);

@@ -128,6 +128,8 @@ std::vector<Entry> officeRoutes(Service* of) {
         {"GET", "/office/stations", Shown([](const Request&, const Visit& v) { return stationsPage(v); })},
         {"POST", "/office/stations",
          Shown([](const Request& r, const Visit& v) { return addStationCode(v, sentOf(r)); })},
+        {"POST", "/office/stations/([0-9a-f]{32})/release",
+         Shown([](const Request& r, const Visit& v) { return releaseStation(v, r.matches[1]); })},
         {"POST", "/office/stations/([0-9a-f]{32})/revoke",
          Shown([](const Request& r, const Visit& v) { return revokeStation(v, r.matches[1]); })},
         {"GET", "/office/audit", Shown([](const Request& r, const Visit& v) {

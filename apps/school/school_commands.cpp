@@ -29,6 +29,7 @@ using school::Books;
 struct BooksOptions {
     std::string data, database, name, code, file, role = "student", person, schoolClass, exercise;
     std::size_t hours = 24, days = 120;
+    bool isForExams = false;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
@@ -45,7 +46,8 @@ void offerCode(const BooksOptions& o) {
     Books books(place.data, place.database);
     const std::string code = school::newStationCode();
     const Act act = now();
-    books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act);
+    books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act,
+                    o.isForExams ? "exam" : "practice");
     fmt::print("{}\n", code);
 }
 
@@ -201,6 +203,7 @@ void addBooksCommands(cli::Command& app) {
     code.option("--hours", o.hours, "that it holds")
         .check(cli::range(std::size_t{1}, std::size_t{10000}))
         .showDefault();
+    code.flag("--exam", o.isForExams, "of a station that holds exams: it is released by itself, when it has enrolled");
     code.callback([options] { offerCode(*options); });
 
     cli::Command person = app.subcommand("person", "Adds a person" + where);

@@ -62,9 +62,10 @@ class ExamWindowTest : public SchoolStation {
                     "--allow", "scale-bar"});
         pin_ = school({"exam", "invigilator", "--data", d, exam_, "t01"}).section(' ', 1);
         school({"exam", "sign", "--data", d, exam_});
-        const QString code = school({"code", "--data", d, "exam room 1"});
+        const QString code = school({"code", "--data", d, "--exam", "exam room 1"});
         startServer(1);
         school({"exam", "enrol", address_, code, "--service", folder()});
+        school({"exam", "release", "--data", d, "exam room 1"});
         school({"exam", "fetch", "--service", folder()});
     }
     [[nodiscard]] QString folder() const { return toQString(at("service")); }

@@ -8,6 +8,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/record/session/recorder.h"
 #include "handpiece/school/people/secret.h"
+#include "handpiece/school/store/books_accounts.h"
 #include "school/exam_arrival.h"
 #include "school/exam_desk.h"
 #include "school/exam_service.h"
@@ -100,15 +101,22 @@ class ExamTest : public school_server::SchoolTest {
         exams.set(school::ExamCandidate{"ex1", "s018", exam::candidateHash("ex1", kOther), 0, 0, ""}, act);
         exams.set(school::ExamInvigilator{"ex1", "t1", pinHash()}, act);
         (void)school_server::signExam(open, "ex1", school_server::examKey(data()), act);
-        open.offerCode(kExamCode, "exam room, 1", 4'000'000'000'000, act);
+        open.offerCode(kExamCode, "exam room, 1", 4'000'000'000'000, act, "exam");
     }
     static const std::string& pinHash() {
         static const std::string hash = school::hashOfPassword(kPin);
         return hash;
     }
     [[nodiscard]] fs::path service() const { return folder_.path() / "exam"; }
+    /// As an administrator does, of what is enrolled by now.
+    void release() const {
+        Books open(data());
+        for (const school::Station& one : school::BooksAccounts(open).stations())
+            if (one.kind == "exam") open.releaseForExams(one.id, {"server", 1});
+    }
     void setUpStation(const School& school) const {
         enrolForExams(school.address(), kExamCode, service());
+        release();
         EXPECT_THAT(fetchExams(service()).packs, SizeIs(1));
     }
     /// From the beginning to what the server made of it.
@@ -196,7 +204,9 @@ TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
     EXPECT_EQ(fetched.sitting, sitting);
     EXPECT_THAT(fetched.files, ElementsAre(school::sha256Of(session())));
     {
-        const school_station::Enrolment other = school_station::enrol(school.address(), school_server::kCode, "s017");
+        Books(data()).offerCode("ABC-DEF-GHJ-KMT", "exam room, 2", 4'000'000'000'000, {"server", 1}, "exam");
+        const school_station::Enrolment other = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMT", "");
+        release();
         httplib::Client http(school.address());
         const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + other.key}};
         EXPECT_EQ(http.Get("/api/v1/exams/sittings/" + sitting + "/receipt", headers)->status, 404);
@@ -299,10 +309,11 @@ TEST_F(ExamTest, BeginningAgainAndAtAnotherStationShow) {
     setUpStation(school);
     {
         Books open(data());
-        open.offerCode("ABC-DEF-GHJ-KMT", "exam room, 2", 4'000'000'000'000, {"server", 1});
+        open.offerCode("ABC-DEF-GHJ-KMT", "exam room, 2", 4'000'000'000'000, {"server", 1}, "exam");
     }
     const fs::path second = folder_.path() / "exam2";
     enrolForExams(school.address(), "ABC-DEF-GHJ-KMT", second);
+    release();
     EXPECT_THAT(fetchExams(second).packs, SizeIs(1));
     const Service here(service()), there(second);
     const std::string first = sit(here, session()), again = sit(here, session()), elsewhere = sit(there, session());
@@ -343,7 +354,7 @@ TEST_F(ExamTest, OnlyTheServiceOfAStationTellsOfAnExam) {
     const exam::SigningKey key = exam::newSigningKey();
     const std::string text = exam::toText(e);
     const std::string entry = exam::joined({text, exam::signatureOf(text, key)});
-    EXPECT_EQ(http.Post("/api/v1/exams/chain", headers, entry, "text/plain")->status, 404) << "a station without a key";
+    EXPECT_EQ(http.Post("/api/v1/exams/chain", headers, entry, "text/plain")->status, 403) << "no station for exams";
     // With the exam station's own way to the server and another key, and what is no entry.
     const exam::StationIdentity station = exam::stationIn(service());
     const httplib::Headers its{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + station.key}};
@@ -378,6 +389,45 @@ TEST_F(ExamTest, OnlyTheServiceOfAStationTellsOfAnExam) {
                   (void)exam::installPack(service(), {forged, {pack.key, pack.signature}}, {});
               }),
               "exam-changed");
+}
+
+TEST_F(ExamTest, APracticeStationsKeyOpensNothingOfAnExam) {
+    School school(data());
+    // The key lies in the student's own account. With it a whole exam was made: a key of one's own, then a chain.
+    const school_station::Enrolment own = school_station::enrol(school.address(), school_server::kCode, "s017");
+    const exam::SigningKey key = exam::newSigningKey();
+    httplib::Client http(school.address());
+    const auto refused = [&](const std::string& stationKey) {
+        const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + stationKey}};
+        exam::Entry e;
+        e.station = own.station, e.number = 1, e.previous = exam::kNoEntry, e.at = now_, e.kind = "started";
+        const std::string text = exam::toText(e);
+        int count = 0;
+        const auto look = [&](const httplib::Result& answer) {
+            count += answer && answer->status == 403 && answer->body.find("may hold no exams") != std::string::npos;
+        };
+        look(http.Get("/api/v1/exams", headers));
+        look(http.Get("/api/v1/exams/ex1/pack", headers));
+        look(http.Get("/api/v1/exams/ex1/exercise", headers));
+        look(http.Get("/api/v1/exams/chain", headers));
+        look(http.Post("/api/v1/exams/chain", headers, exam::joined({text, exam::signatureOf(text, key)}),
+                       "text/plain"));
+        look(http.Get("/api/v1/exams/sittings/" + std::string(32, 'a') + "/receipt", headers));
+        return count;
+    };
+    const httplib::Headers its{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + own.key}};
+    EXPECT_EQ(http.Post("/api/v1/exams/station", its, key.open, "text/plain")->status, 403);
+    EXPECT_EQ(refused(own.key), 6);
+    // Nor does a code for exams by itself, until an administrator has looked at the station.
+    enrolForExams(school.address(), kExamCode, service());
+    const std::string stations = exam::stationIn(service()).key;
+    EXPECT_EQ(refused(stations), 6);
+    EXPECT_EQ(errorIdOf([&] { (void)fetchExams(service()); }), "exam-station");
+    Books open(data());
+    EXPECT_EQ(errorIdOf([&] { open.releaseForExams(own.station, {"server", 1}); }), "books-unknown");
+    release();
+    EXPECT_EQ(refused(stations), 0);
+    EXPECT_THAT(fetchExams(service()).packs, SizeIs(1));
 }
 
 TEST_F(ExamTest, AServiceThatIsKilledLosesNothing) {

@@ -31,8 +31,9 @@ inline std::vector<std::string> holdExam(Books& books, const fs::path& data,
     exams.set(school::ExamInvigilator{"ex1", "t1", "a-hash"}, act);
     const school::ExamPack pack = signExam(books, "ex1", examKey(data), act);
     const std::string station(32, 'e');
-    books.offerCode("exam-room-1-code", "exam room, 1", now + 1'000'000, act);
+    books.offerCode("exam-room-1-code", "exam room, 1", now + 1'000'000, act, "exam");
     (void)books.enrolStation("exam-room-1-code", station, std::string(64, 'f'), now);
+    books.releaseForExams(station, act);
     const exam::SigningKey key = exam::newSigningKey();
     exams.addKey(station, key.open, now);
     exam::ChainEnd end;

@@ -130,7 +130,7 @@ inline void fill(Books& books) {
     books.add(
         Assignment{"a1", "c1", shortHash(0xe0), shortHash(0xab), "Week 1", "practice", "glass", kNow, kNow + kDay},
         kAdmin);
-    books.offerCode("one-time-code", "Room 2, 14", kNow + kDay, kAdmin);
+    books.offerCode("one-time-code", "Room 2, 14", kNow + kDay, kAdmin, "exam");
     ASSERT_TRUE(books.enrolStation("one-time-code", kStation, std::string(40, 'k'), kNow));
 }
 class BooksTest : public testing::TestWithParam<const char*> {

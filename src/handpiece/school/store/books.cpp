@@ -515,14 +515,23 @@ std::optional<Assignment> Books::assignment(const std::string& id) const {
 
 // Stations.
 
-void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act) {
+namespace {
+constexpr const char* kStationKinds = "practice or exam";
+Station stationOf(const Statement& row) {
+    return {row.text(0), row.text(1), row.integer(2), row.integer(3), row.text(4), row.integer(5)};
+}
+}  // namespace
+
+void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
+                      const std::string& kind) {
+    if (kind != "practice" && kind != "exam") throw invalid("kind of station", kind, kStationKinds);
     if (code.size() < 8) throw invalid("code of a station", code, "use 8 characters or more, by chance");
     Transaction transaction(*state_->database);
-    if (!state_->any("INSERT INTO station_codes (hash, name, expires, station) VALUES ($1, $2, $3, '') "
+    if (!state_->any("INSERT INTO station_codes (hash, name, expires, station, kind) VALUES ($1, $2, $3, '', $4) "
                      "ON CONFLICT DO NOTHING RETURNING hash",
-                     sha256(code), name, expires))
+                     sha256(code), name, expires, kind))
         throw duplicate(*state_->database, "code of a station", name);
-    state_->note(act, "offer station code", name);
+    state_->note(act, kind == "exam" ? "offer exam station code" : "offer station code", name);
     transaction.commit();
 }
 
@@ -531,18 +540,18 @@ std::optional<Station> Books::enrolStation(const std::string& code, const std::s
     if (!isHex(id, 32)) throw invalid("id of a station", id, "send 32 hexadecimal digits");
     if (key.size() < 32) throw invalid("key of a station", "", "use 32 characters or more, by chance");
     Transaction transaction(*state_->database);
-    Station station{id, {}, now, 0};
+    Station station{id, {}, now, 0, {}, 0};
     {
         Statement row = state_->ask(
             "UPDATE station_codes SET station = $1 WHERE hash = $2 AND station = '' AND "
-            "expires > $3 RETURNING name",
+            "expires > $3 RETURNING name, kind",
             id, sha256(code), now);
         if (!row.next()) return {};
-        station.name = row.text(0);
+        station.name = row.text(0), station.kind = row.text(1);
     }
-    if (!state_->any("INSERT INTO stations (id, name, key_hash, enrolled, revoked) VALUES ($1, $2, $3, $4, 0) "
-                     "ON CONFLICT DO NOTHING RETURNING id",
-                     id, station.name, sha256(key), now))
+    if (!state_->any("INSERT INTO stations (id, name, key_hash, enrolled, revoked, kind, released) VALUES ($1, $2, $3, "
+                     "$4, 0, $5, 0) ON CONFLICT DO NOTHING RETURNING id",
+                     id, station.name, sha256(key), now, station.kind))
         throw duplicate(*state_->database, "station", id);
     state_->note({"station " + id, now}, "enrol station", id);
     transaction.commit();
@@ -557,11 +566,21 @@ void Books::revoke(const std::string& station, const Act& act) {
     transaction.commit();
 }
 
+void Books::releaseForExams(const std::string& station, const Act& act) {
+    Transaction transaction(*state_->database);
+    if (!state_->any("SELECT 1 FROM stations WHERE id = $1 AND kind = 'exam' AND revoked = 0", station))
+        throw unknown(*state_->database, "station for exams", station);
+    if (state_->any("UPDATE stations SET released = $1 WHERE id = $2 AND released = 0 RETURNING id", act.at, station))
+        state_->note(act, "release station for exams", station);
+    transaction.commit();
+}
+
 std::optional<Station> Books::stationByKey(const std::string& key) const {
-    Statement row = state_->ask("SELECT id, name, enrolled, revoked FROM stations WHERE key_hash = $1 AND revoked = 0",
-                                sha256(key));
+    Statement row = state_->ask(
+        "SELECT id, name, enrolled, revoked, kind, released FROM stations WHERE key_hash = $1 AND revoked = 0",
+        sha256(key));
     if (!row.next()) return {};
-    return Station{row.text(0), row.text(1), row.integer(2), row.integer(3)};
+    return stationOf(row);
 }
 
 void Books::sweep(Milliseconds now) {

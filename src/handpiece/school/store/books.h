@@ -72,6 +72,9 @@ struct Assignment {
 struct Station {
     std::string id{}, name{};
     Milliseconds enrolled = 0, revoked = 0;
+    std::string kind = "practice";  ///< or "exam": enrolled by a code of that kind
+    Milliseconds released = 0;      ///< for exams, by an administrator
+    [[nodiscard]] bool mayHoldExams() const { return kind == "exam" && released > 0 && revoked == 0; }
 };
 
 /// An attempt as a station pushes it. Its score is what the station says: provisional.
@@ -161,7 +164,7 @@ struct BookTable {
 /// (what, which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
 class Books {
   public:
-    static constexpr int kVersion = 5;
+    static constexpr int kVersion = 6;
     /// A job that so many workers took and none gave back is given up.
     static constexpr int kMostTurns = 5;
 
@@ -211,11 +214,15 @@ class Books {
     [[nodiscard]] std::optional<Assignment> assignment(const std::string& id) const;
 
     // Stations. Codes and keys are kept as hashes.
-    void offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act);
+    /// `kind`: of the station that it makes.
+    void offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
+                   const std::string& kind = "practice");
     /// Once a code; none for one that is unknown, used or too old.
     std::optional<Station> enrolStation(const std::string& code, const std::string& id, const std::string& key,
                                         Milliseconds now);
     void revoke(const std::string& station, const Act& act);
+    /// From now on it may hold exams. One of that kind only; again is no error.
+    void releaseForExams(const std::string& station, const Act& act);
     /// None where it is unknown or revoked.
     [[nodiscard]] std::optional<Station> stationByKey(const std::string& key) const;
 

@@ -205,6 +205,14 @@ CREATE TABLE lti_grades (
   next INT8 NOT NULL, sent INT8 NOT NULL, problem TEXT NOT NULL) STRICT;
 CREATE INDEX lti_grades_open ON lti_grades (next) WHERE sent = 0;
 )sql",
+    // A practice station's key could make a whole exam. Those that hold exams are released anew, by an administrator
+    // who knows which they are.
+    R"sql(
+ALTER TABLE station_codes ADD COLUMN kind TEXT NOT NULL DEFAULT 'practice';
+ALTER TABLE stations ADD COLUMN kind TEXT NOT NULL DEFAULT 'practice';
+ALTER TABLE stations ADD COLUMN released INT8 NOT NULL DEFAULT 0;
+UPDATE stations SET kind = 'exam' WHERE id IN (SELECT station FROM exam_stations);
+)sql",
 };
 
 /// What is written once and never changed, also by whoever comes to the database by another way; since which version.

@@ -43,12 +43,12 @@ void requireExam(Statement row, const Database& database, const std::string& exa
 void ExamBooks::addKey(const std::string& station, const std::string& key, Milliseconds now) {
     if (!isHex(key, 64)) throw invalid("key of a station", key, "send 64 hexadecimal digits");
     Transaction transaction(*state_.database);
-    if (!state_.any("SELECT 1 FROM stations WHERE id = $1", station))
-        throw unknown(*state_.database, "station", station);
+    if (!state_.any("SELECT 1 FROM stations WHERE id = $1 AND kind = 'exam'", station))
+        throw unknown(*state_.database, "station for exams", station);
     if (state_.any("INSERT INTO exam_stations (station, key, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
                    "RETURNING station",
                    station, key, now))
-        state_.note({"station " + station, now}, "station may hold exams", station);
+        state_.note({"station " + station, now}, "station's exam key", station);
     else if (!state_.any("SELECT 1 FROM exam_stations WHERE station = $1 AND key = $2", station, key))
         throw changed(*state_.database, "key of the station", station);
     transaction.commit();

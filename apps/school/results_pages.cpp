@@ -16,6 +16,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/store/teaching.h"
+#include "school/exam_pages.h"
 #include "school/teaching.h"
 
 namespace handpiece::school_server {
@@ -284,6 +285,7 @@ std::optional<std::vector<Outcome>> visibleOf(const Visit& v, const std::string&
         // Whose it is must be theirs to know: an examiner has no curve of a person.
         if (!may(v, Action::seeAttempt, relation) || !may(v, Action::seeName, relation)) continue;
         isAny = true;
+        if (relation.isOwn && isUndecidedExam(v, one.pushed.attempt.id)) continue;
         seen.push_back(std::move(one));
     }
     if (!isAny) return {};

@@ -483,6 +483,18 @@ TEST_F(ExamTest, ATeacherDecidesAndAnExaminerMarksAgainBlind) {
     EXPECT_EQ(status(student, "/attempts/" + sitting + "/result"), 403);
     EXPECT_THAT(student->get("/people/s017")->body,
                 AllOf(HasSubstr("/attempts/" + sitting), Not(HasSubstr("0.9 / 1.0"))));
+    const auto ways = [&](const auto& who) {
+        std::string all;
+        for (const char* one : {"curves", "export/attempts.csv", "export/criteria.csv",
+                                "export/statements.json?home=https%3A%2F%2Fschool.example"}) {
+            const auto answer = who->get(std::string("/people/s017/") + one);
+            EXPECT_EQ(answer->status, 200) << one;
+            all += answer->body;
+        }
+        return all;
+    };
+    EXPECT_THAT(ways(student), AllOf(Not(HasSubstr(sitting)), Not(HasSubstr("90.0")), Not(HasSubstr("0.9"))));
+    EXPECT_THAT(ways(teacher), HasSubstr(sitting));
     EXPECT_EQ(says(student, "confirm", "pass", "me"), 403);
     EXPECT_EQ(says(student, "appeal", "", "unfair"), 409) << "nothing was decided yet";
     EXPECT_EQ(says(examiner, "confirm", "pass", "x"), 403);
@@ -492,6 +504,7 @@ TEST_F(ExamTest, ATeacherDecidesAndAnExaminerMarksAgainBlind) {
     EXPECT_EQ(says(teacher, "confirm", "fail", "floor too deep <b>"), 303);
     EXPECT_THAT(student->get(page)->body,
                 AllOf(HasSubstr("Not passed"), HasSubstr("floor too deep &lt;b&gt;"), HasSubstr("proven 0.9 / 1.0")));
+    EXPECT_THAT(ways(student), HasSubstr(sitting));
     EXPECT_EQ(says(student, "appeal", "", ""), 409) << "say why";
     EXPECT_EQ(says(student, "appeal", "", "it is within the range"), 303);
     EXPECT_EQ(says(student, "appeal", "", "again"), 409);

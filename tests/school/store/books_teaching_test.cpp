@@ -13,6 +13,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::SizeIs;
 
 class TeachingBooksTest : public BooksTest {
@@ -78,9 +79,15 @@ TEST_P(TeachingBooksTest, ADeskKeepsItsWorksAndASheetThatIsInStays) {
     EXPECT_TRUE(teaching.isReleased(id(1)));
     teaching.release(std::vector<std::string>{id(1)}, false, kAdmin);
     EXPECT_THAT(teaching.released("a1"), ElementsAre(id(3)));
-    // All of it is in what is held of a person.
-    const std::string about = asText(books->about("t1", kAdmin));
-    EXPECT_THAT(about, testing::AllOf(HasSubstr("# desks\n"), HasSubstr("# sheets\n"), HasSubstr("{\"more\":1}")));
+    // All of it is in what is held of a person; and not whose work is marked blind by whom.
+    const auto of = [&](const char* code) { return asText(books->about(code, kAdmin)); };
+    EXPECT_THAT(of("t1"), testing::AllOf(HasSubstr("# desks\n"), HasSubstr("# sheets\n"), HasSubstr("{\"more\":1}")));
+    const std::string marker = of("t1"), student = of(books->attempt(id(1))->person.c_str());
+    EXPECT_THAT(marker, Not(HasSubstr(id(1)))) << "which code is which work";
+    EXPECT_THAT(student, Not(testing::AnyOf(HasSubstr("{\"more\":1}"), HasSubstr(id(77))))) << "not released";
+    teaching.release(std::vector<std::string>{id(1)}, true, kAdmin);
+    EXPECT_THAT(of(books->attempt(id(1))->person.c_str()), HasSubstr(id(77)));
+    EXPECT_THAT(of("t1"), HasSubstr(id(1)));
 }
 
 TEST_P(TeachingBooksTest, WhatCountsIsChosenAndRubricsGetNumbers) {

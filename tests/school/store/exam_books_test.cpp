@@ -86,6 +86,7 @@ TEST_P(BooksTest, OfExamsTellBackAllThatWasPutIn) {
     // What is exported of a person has no codes' and no keys' secrets.
     const std::string about = asText(books->about("s1", kAdmin));
     EXPECT_THAT(about, HasSubstr(sitting));
+    EXPECT_THAT(about, Not(HasSubstr("one\\ntwo"))) << "what was doubted, before a teacher has decided";
     EXPECT_THAT(asText(books->about("t1", kAdmin)), Not(HasSubstr("argon2id")));
 }
 

@@ -17,9 +17,17 @@ struct Listed {
     const char* columns;
     const char* order;
     const char* ofPerson;  ///< nullptr: nothing in it is of one person
+    /// In what a person is given, where that is less: no table tells a marker whose work it is, nor anybody what their
+    /// own is worth before it is decided or released.
+    const char* ownColumns = nullptr;
 };
 #define HANDPIECE_OF_SITTINGS "sitting IN (SELECT id FROM exam_sittings WHERE person = $1)"
 #define HANDPIECE_OF_ATTEMPTS "attempt IN (SELECT id FROM attempts WHERE person = $1)"
+#define HANDPIECE_DECIDED "sitting IN (SELECT sitting FROM exam_decisions) AND " HANDPIECE_OF_SITTINGS
+#define HANDPIECE_DECIDED_ATTEMPTS \
+    HANDPIECE_OF_ATTEMPTS          \
+    " AND attempt NOT IN (SELECT id FROM exam_sittings WHERE id NOT IN (SELECT sitting FROM exam_decisions))"
+#define HANDPIECE_RELEASED_ATTEMPTS HANDPIECE_OF_ATTEMPTS " AND attempt IN (SELECT attempt FROM releases)"
 constexpr std::array kListed = {
     Listed{"people", "t code, i made, i erased", "code", "code = $1"},
     Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
@@ -46,13 +54,15 @@ constexpr std::array kListed = {
            "author = $1 OR " HANDPIECE_OF_ATTEMPTS},
     Listed{"shares", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
     Listed{"marks", "t id, t attempt, t marker, t kind, t verdict, r points, r max_points, t marks, i made", "id",
-           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+           "marker = $1 OR (" HANDPIECE_RELEASED_ATTEMPTS ")",
+           "t id, t CASE WHEN kind = 'blind' AND attempt NOT IN (SELECT attempt FROM releases) THEN '' ELSE attempt "
+           "END AS attempt, t marker, t kind, t verdict, r points, r max_points, t marks, i made"},
     Listed{"jobs", "i number, t campaign, t attempt, t rubric, i made, t state, t worker, i lease_until, i turn",
            "number", nullptr},
     Listed{"scores",
            "i job, t attempt, t campaign, t rubric, i engine, t state, t reason, t state_hash, r score, r max_score, "
            "r whole_score, t passed, i borderline, t worker, i made, t result",
-           "job", HANDPIECE_OF_ATTEMPTS},
+           "job", HANDPIECE_DECIDED_ATTEMPTS},
     Listed{"exam_stations", "t station, t key, i made", "station", nullptr},
     Listed{"exam_settings", "t exam, i minutes, t locked", "exam", nullptr},
     Listed{"exam_candidates", "t exam, t person, i extra_percent, i pause_minutes, t helps", "exam, person",
@@ -66,7 +76,7 @@ constexpr std::array kListed = {
     Listed{"exam_entries",
            "t station, i number, t hash, t kind, t sitting, t text, t key, t signature, i at, i received",
            "station, number", HANDPIECE_OF_SITTINGS},
-    Listed{"exam_doubts", "t sitting, t doubts, i made", "sitting", HANDPIECE_OF_SITTINGS},
+    Listed{"exam_doubts", "t sitting, t doubts, i made", "sitting", HANDPIECE_DECIDED},
     Listed{"exam_decisions",
            "t id, t sitting, t person, t kind, t verdict, r points, r max_points, t words, i made, i place",
            "sitting, place", "person = $1 OR " HANDPIECE_OF_SITTINGS},
@@ -81,9 +91,9 @@ constexpr std::array kListed = {
            "number", "person = $1"},
     Listed{"desks", "t assignment, t marker, t seed, i made", "assignment, marker", "marker = $1"},
     Listed{"desk_works", "t assignment, t marker, i batch, i place, t attempt", "assignment, marker, batch, place",
-           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+           "marker = $1", "t assignment, t marker, i batch, i place"},
     Listed{"sheets", "t assignment, t marker, t code, t attempt, t content, i is_in, i changed",
-           "assignment, marker, code", "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+           "assignment, marker, code", "marker = $1", "t assignment, t marker, t code, t content, i is_in, i changed"},
     Listed{"marking_rules", "t assignment, r differ_percent, i made", "assignment", nullptr},
     Listed{"releases", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
     Listed{"campaigns", "t id, t assignment, t rubric, t who, i made", "id", "who = $1"},
@@ -92,24 +102,29 @@ constexpr std::array kListed = {
            "assignment, judge, round, criterion", "judge = $1"},
     Listed{"standards", "t id, t assignment, t method, t content, t who, i made", "id", "who = $1"},
     Listed{"exemplars", "t attempt, t assignment, t content, t who, i made", "attempt",
-           "who = $1 OR " HANDPIECE_OF_ATTEMPTS},
-    Listed{"calibrations", "t attempt, t marker, t content, i made", "attempt, marker",
-           "marker = $1 OR " HANDPIECE_OF_ATTEMPTS},
+           "who = $1 OR (" HANDPIECE_RELEASED_ATTEMPTS ")"},
+    Listed{"calibrations", "t attempt, t marker, t content, i made", "attempt, marker", "marker = $1"},
     Listed{"audit", "i number, i at, t who, t what, t about, t detail", "number",
-           "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)"},
+           "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)",
+           "i number, i at, t who, t what, t CASE WHEN what = 'mark' AND detail = 'blind' AND about NOT IN (SELECT "
+           "attempt FROM releases) THEN '' ELSE about END AS about, t detail"},
 };
+#undef HANDPIECE_RELEASED_ATTEMPTS
+#undef HANDPIECE_DECIDED_ATTEMPTS
+#undef HANDPIECE_DECIDED
 #undef HANDPIECE_OF_ATTEMPTS
 #undef HANDPIECE_OF_SITTINGS
 
 BookTable read(Database& database, const Listed& listed, const std::string* person) {
     BookTable table{listed.table, {}, {}};
     std::string kinds, columns;
-    for (std::string_view rest = listed.columns; !rest.empty();) {
+    for (std::string_view rest = person && listed.ownColumns ? listed.ownColumns : listed.columns; !rest.empty();) {
         const std::string_view one = rest.substr(0, rest.find(','));
         rest.remove_prefix(std::min(rest.size(), one.size() + 2));
         kinds += one[0];
-        table.columns.emplace_back(one.substr(2));
-        columns += (columns.empty() ? "" : ", ") + table.columns.back();
+        const std::size_t name = one.rfind(' ') + 1;  // the kind stands before it, or AS
+        table.columns.emplace_back(one.substr(name));
+        columns += fmt::format("{}{}", columns.empty() ? "" : ", ", one.substr(2));
     }
     Statement rows(database, fmt::format("SELECT {} FROM {} {} ORDER BY {}", columns, listed.table,
                                          person ? fmt::format("WHERE {}", listed.ofPerson) : "", listed.order)

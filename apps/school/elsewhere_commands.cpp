@@ -27,7 +27,7 @@ using school::Books;
 struct ElsewhereOptions {
     std::string data, database;
     school::LtiPlatform platform;
-    std::string person, external, schoolClass;
+    std::string person, external, schoolClass, issuer, client;
     int practiceDays = -1, closedDays = -1, personalDays = -1;
     bool go = false;
     std::string home, lrs, user;
@@ -129,15 +129,23 @@ void addElsewhereCommands(cli::Command& app) {
     platform.option("--token", o.platform.tokenAddress, "where access is asked for").required();
     platform.option("--keys", o.platform.keysAddress, "its key set").required();
     platform.option("--deployment", o.platform.deployments, "id of a deployment; several times").required().takeAll();
+    platform.flag("--lists", o.platform.hasLists, "what it calls people are the ids of the school's class lists");
     platform.callback([options] { setPlatform(*options); });
     cli::Command person =
-        lti.subcommand("person", "What other systems call a person: single sign-on, LTI, class lists");
+        lti.subcommand("person", "What class lists and single sign-on call a person, or one platform");
     books(person);
     person.option("CODE", o.person, "of the person").required();
     person.option("EXTERNAL", o.external, "their id there").required();
+    person.option("--platform", o.issuer, "issuer of a platform that has no class lists of the school's");
+    person.option("--client", o.client, "where it has several here");
     person.callback([options] {
         Books open(options->data, options->database);
-        school::LtiBooks(open).setExternal(options->person, options->external, act());
+        school::LtiBooks platforms(open);
+        if (options->issuer.empty()) return platforms.setExternal(options->person, options->external, act());
+        const auto found = platforms.platform(options->issuer, options->client);
+        if (!found)
+            throw core::Error("there is no such platform, or several", options->issuer, "give --client as well");
+        platforms.setPerson(*found, options->external, options->person, act());
     });
     cli::Command grades = lti.subcommand("grades", "Which grades went, which wait, and why");
     books(grades);

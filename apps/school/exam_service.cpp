@@ -189,9 +189,17 @@ struct ExamService::State {
         {
             const core::FileStream file = core::createOwnFile(coming);
             bool isWell = file != nullptr;
-            read([&](const char* bytes, std::size_t count) {
+            std::uint64_t came = 0;
+            const bool isWhole = read([&](const char* bytes, std::size_t count) {
+                came += count;
                 return isWell = isWell && std::fwrite(bytes, 1, count, file.get()) == count;
             });
+            // A hand-over that is cut off replaces nothing.
+            if (isWell && (!isWhole || came != request.get_header_value<std::uint64_t>("Content-Length"))) {
+                fs::remove(coming, none);
+                throw core::Error("the recording did not come whole", place.string(), "hand it over again")
+                    .as("exam-damaged", {"recording", ""});
+            }
             isWell = isWell && std::fflush(file.get()) == 0 && ::fsync(::fileno(file.get())) == 0;
             if (!isWell) {
                 fs::remove(coming, none);

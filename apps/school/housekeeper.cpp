@@ -44,6 +44,7 @@ void Housekeeper::round() {
     const school::Milliseconds now = service_.clock();
     if (now - expired_ >= kDayMs || now < expired_) {
         (void)school::Retention(*open).expire({"server", now});
+        open->sweep(now);
         service_.reviews.removeGone(*open);
         expired_ = now;
     }

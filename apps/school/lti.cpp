@@ -115,13 +115,13 @@ void requireClaims(const Json& c, const school::LtiPlatform& platform, const std
     if (subject.empty() || subject.size() > 255) throw claim("sub", "nobody");
 }
 
-school::Person personOf(const LtiBooks& lti, const Json& c) {
-    // The class list's id, where the platform has it (OneRoster), else its own.
+school::Person personOf(const LtiBooks& lti, const school::LtiPlatform& platform, const Json& c) {
+    // The class list's id, where the platform has it (OneRoster), else its own; never another platform's.
     for (const std::string& known : {text(at(c, std::string(kClaim) + "lis"), "person_sourcedid"), text(c, "sub")})
         if (!known.empty())
-            if (auto person = lti.personByExternal(known)) return *person;
+            if (auto person = lti.personOn(platform, known)) return *person;
     throw core::Error("this school's books do not know who you are on that platform", "launch",
-                      "ask your teacher: your external id here has to be the one there")
+                      "ask your teacher: handpiece school lti person")
         .as("launch-person", {text(c, "sub")});
 }
 
@@ -213,7 +213,7 @@ Launch takeLaunch(Books& books, const std::string& token, const std::string& sta
     }
     const Json c = config::requireOutsideJson<Json>(claims);
     requireClaims(c, *platform, begun->nonceHash, now);
-    Launch launch{personOf(lti, c), "/classes"};
+    Launch launch{personOf(lti, *platform, c), "/classes"};
     const std::string id = text(at(c, std::string(kClaim) + "custom"), "assignment");
     if (const auto assignment = id.size() <= 64 ? books.assignment(id) : std::nullopt) {
         bool isStudent = false;

@@ -87,7 +87,8 @@ class ElsewhereTest : public SchoolTest {
                        platform_.address() + "/auth",
                        platform_.address() + "/token",
                        platform_.address() + "/jwks",
-                       {"d1", "d2"}},
+                       {"d1", "d2"},
+                       true},
                       act);
         now_ = systemClock()();
     }
@@ -241,6 +242,24 @@ TEST_F(ElsewhereTest, WhatIsNotThePlatformsWordIsRefused) {
         changed[at] = static_cast<char>(changed[at] ^ (1 << (random() % 7)));
         EXPECT_NE(errorIdOf([&] { (void)claimsOf(changed, keys); }), "") << at;
     }
+}
+
+TEST_F(ElsewhereTest, OnePlatformsIdIsNobodyOnAnother) {
+    Books open(data());
+    LtiBooks lti(open);
+    const Act act{"server", 1};
+    const std::string id = lti.set({"", "https://sandbox.example", "client-1", "a", "t", "k", {"d1"}, false}, act);
+    const school::LtiPlatform sandbox = *lti.platform(id), school = *lti.platform("https://platform.example", "");
+    EXPECT_TRUE(school.hasLists);
+    EXPECT_EQ(lti.personOn(school, "u-17")->code, "s017");
+    // A sandbox in which anybody makes a "17" signed in as that school's.
+    EXPECT_FALSE(lti.personOn(sandbox, "u-17"));
+    lti.setPerson(sandbox, "u-17", "t1", act);
+    lti.setPerson(sandbox, "u-17", "t1", act);
+    EXPECT_EQ(lti.personOn(sandbox, "u-17")->code, "t1");
+    EXPECT_EQ(lti.personOn(school, "u-17")->code, "s017");
+    EXPECT_EQ(errorIdOf([&] { lti.setPerson(sandbox, "u-17", "s017", act); }), "books-duplicate");
+    EXPECT_EQ(errorIdOf([&] { lti.setPerson(sandbox, "", "s017", act); }), "books-invalid");
 }
 
 TEST_F(ElsewhereTest, ABrowserGoesThroughALaunchAndIsNoted) {

@@ -219,6 +219,14 @@ TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
         for (std::string name; names >> name;)
             if (first.find(" " + name + " ") == first.npos)
                 sql(fmt::format("DROP TABLE {}{}", name, isPostgres() ? " CASCADE" : ""));
+        // And what later versions added to the first ones.
+        for (const auto& [table, column] :
+             {std::pair{"stations", "kind"}, {"stations", "released"}, {"station_codes", "kind"}})
+            if (isPostgres())
+                sql(fmt::format("ALTER TABLE {} DROP COLUMN IF EXISTS {}", table, column));
+            else if (sql(fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table,
+                                     column)) == "1")
+                sql(fmt::format("ALTER TABLE {} DROP COLUMN {}", table, column));
     };
     const std::string whole = schema();
     std::mt19937_64 random(test::seed());

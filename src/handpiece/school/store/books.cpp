@@ -251,7 +251,8 @@ void Books::erase(const std::string& code, const Act& act) {
         state_->run("DELETE FROM identities WHERE person = $1", code);
         for (const char* sql : {"DELETE FROM logins WHERE person = $1", "DELETE FROM password_codes WHERE person = $1",
                                 // What a learning platform calls them.
-                                "DELETE FROM lti_lines WHERE person = $1", "DELETE FROM lti_grades WHERE person = $1"})
+                                "DELETE FROM lti_people WHERE person = $1", "DELETE FROM lti_lines WHERE person = $1",
+                                "DELETE FROM lti_grades WHERE person = $1"})
             state_->run(sql, code);
         state_->note(act, "erase", code);
     }

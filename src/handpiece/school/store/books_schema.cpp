@@ -212,6 +212,11 @@ ALTER TABLE station_codes ADD COLUMN kind TEXT NOT NULL DEFAULT 'practice';
 ALTER TABLE stations ADD COLUMN kind TEXT NOT NULL DEFAULT 'practice';
 ALTER TABLE stations ADD COLUMN released INT8 NOT NULL DEFAULT 0;
 UPDATE stations SET kind = 'exam' WHERE id IN (SELECT station FROM exam_stations);
+ALTER TABLE lti_platforms ADD COLUMN lists INT8 NOT NULL DEFAULT 0;
+UPDATE lti_platforms SET lists = 1 WHERE (SELECT count(*) FROM lti_platforms) = 1;
+CREATE TABLE lti_people (
+  platform TEXT NOT NULL REFERENCES lti_platforms (id), subject TEXT NOT NULL,
+  person TEXT NOT NULL REFERENCES people (code), PRIMARY KEY (platform, subject)) STRICT;
 )sql",
 };
 

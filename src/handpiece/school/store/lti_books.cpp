@@ -13,10 +13,13 @@ namespace {
 constexpr Milliseconds kBegunMs = 600'000;
 constexpr std::int64_t kMostBegun = 10'000;
 constexpr const char* kPlatformColumns =
-    "SELECT id, issuer, client, auth_address, token_address, keys_address, deployments FROM lti_platforms";
+    "SELECT id, issuer, client, auth_address, token_address, keys_address, deployments, lists FROM "
+    "lti_platforms";
 
 LtiPlatform platformOf(const Statement& row) {
-    return {row.text(0), row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), partedLines(row.text(6))};
+    return {
+        row.text(0),        row.text(1), row.text(2), row.text(3), row.text(4), row.text(5), partedLines(row.text(6)),
+        row.integer(7) != 0};
 }
 constexpr const char* kGradeColumns =
     "SELECT g.number, g.assignment, g.person, g.platform, g.subject, g.address, g.body, g.tries, g.made, g.next, "
@@ -39,11 +42,12 @@ std::string LtiBooks::set(const LtiPlatform& p, const Act& act) {
     {
         Statement row = state_.ask(
             "INSERT INTO lti_platforms (id, issuer, client, auth_address, token_address, keys_address, deployments, "
-            "made) VALUES ($1, $2, $3, $4, $5, $6, $7, $8) ON CONFLICT (issuer, client) DO UPDATE SET auth_address = "
+            "made, lists) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9) ON CONFLICT (issuer, client) DO UPDATE SET "
+            "auth_address = "
             "excluded.auth_address, token_address = excluded.token_address, keys_address = excluded.keys_address, "
-            "deployments = excluded.deployments RETURNING id",
+            "deployments = excluded.deployments, lists = excluded.lists RETURNING id",
             newId(), p.issuer, p.client, p.authAddress, p.tokenAddress, p.keysAddress, joinedLines(p.deployments),
-            act.at);
+            act.at, std::int64_t{p.hasLists});
         while (row.next())
             id = row.text(0);
     }
@@ -99,6 +103,30 @@ std::optional<LtiBooks::Begun> LtiBooks::take(const std::string& state, Millisec
     }
     transaction.commit();
     return begun;
+}
+
+std::optional<Person> LtiBooks::personOn(const LtiPlatform& p, const std::string& subject) const {
+    std::string code;
+    {
+        Statement row = state_.ask("SELECT person FROM lti_people WHERE platform = $1 AND subject = $2", p.id, subject);
+        if (row.next()) code = row.text(0);
+    }
+    if (!code.empty()) return books_.person(code);
+    return p.hasLists ? personByExternal(subject) : std::nullopt;
+}
+
+void LtiBooks::setPerson(const LtiPlatform& p, const std::string& subject, const std::string& person, const Act& act) {
+    if (subject.empty() || subject.size() > 255) throw invalid("id on a platform", subject, "give 1 to 255 characters");
+    Transaction transaction(*state_.database);
+    state_.requirePerson(person);
+    if (state_.any("INSERT INTO lti_people (platform, subject, person) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING "
+                   "RETURNING person",
+                   p.id, subject, person))
+        state_.note(act, "set id on a platform", person, p.issuer);
+    else if (!state_.any("SELECT 1 FROM lti_people WHERE platform = $1 AND subject = $2 AND person = $3", p.id, subject,
+                         person))
+        throw duplicate(*state_.database, "id on this platform", subject);
+    transaction.commit();
 }
 
 std::optional<Person> LtiBooks::personByExternal(const std::string& external) const {

@@ -19,6 +19,7 @@ struct LtiPlatform {
     std::string issuer{}, client{};
     std::string authAddress{}, tokenAddress{}, keysAddress{};
     std::vector<std::string> deployments{};
+    bool hasLists = false;  ///< what it calls people are the external ids of the school's class lists
 };
 /// Where a person's grade for an assignment goes.
 struct LtiLine {
@@ -62,8 +63,13 @@ class LtiBooks : public BooksRoom {
     /// Once: it is gone then. None where it is unknown or older than ten minutes.
     std::optional<Begun> take(const std::string& state, Milliseconds now);
 
+    /// Whom this platform calls so: by its own table, else, where it has the school's lists, by the external id.
+    [[nodiscard]] std::optional<Person> personOn(const LtiPlatform& platform, const std::string& subject) const;
+    /// Throws "books-duplicate" where another one has that id there.
+    void setPerson(const LtiPlatform& platform, const std::string& subject, const std::string& person, const Act& act);
+    /// Of the school's class lists and single sign-on; no platform's.
     [[nodiscard]] std::optional<Person> personByExternal(const std::string& external) const;
-    /// What other systems call this person; empty: nothing. Throws "books-duplicate".
+    /// What class lists and single sign-on call this person; empty: nothing. Throws "books-duplicate".
     void setExternal(const std::string& person, const std::string& external, const Act& act);
 
     void set(const LtiLine& line);

@@ -249,15 +249,15 @@ TEST_F(ElsewhereTest, OnePlatformsIdIsNobodyOnAnother) {
     LtiBooks lti(open);
     const Act act{"server", 1};
     const std::string id = lti.set({"", "https://sandbox.example", "client-1", "a", "t", "k", {"d1"}, false}, act);
-    const school::LtiPlatform sandbox = *lti.platform(id), school = *lti.platform("https://platform.example", "");
-    EXPECT_TRUE(school.hasLists);
-    EXPECT_EQ(lti.personOn(school, "u-17")->code, "s017");
+    const school::LtiPlatform sandbox = *lti.platform(id), other = *lti.platform("https://platform.example", "");
+    EXPECT_TRUE(other.hasLists);
+    EXPECT_EQ(lti.personOn(other, "u-17")->code, "s017");
     // A sandbox in which anybody makes a "17" signed in as that school's.
     EXPECT_FALSE(lti.personOn(sandbox, "u-17"));
     lti.setPerson(sandbox, "u-17", "t1", act);
     lti.setPerson(sandbox, "u-17", "t1", act);
     EXPECT_EQ(lti.personOn(sandbox, "u-17")->code, "t1");
-    EXPECT_EQ(lti.personOn(school, "u-17")->code, "s017");
+    EXPECT_EQ(lti.personOn(other, "u-17")->code, "s017");
     EXPECT_EQ(errorIdOf([&] { lti.setPerson(sandbox, "u-17", "s017", act); }), "books-duplicate");
     EXPECT_EQ(errorIdOf([&] { lti.setPerson(sandbox, "", "s017", act); }), "books-invalid");
 }

@@ -63,8 +63,12 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
     const std::vector<std::pair<const char*, const char*>> who{
         {"nobody", ""}, {"student", "s018"}, {"teacher", "t1"}, {"examiner", "e1"}, {"administrator", "a1"}};
     std::string table =
-        "| route | nobody | student | teacher | examiner | administrator | station |\n|---|---|---|---|---|---|---|\n";
-    const std::string key(64, 'd');
+        "| route | nobody | student | teacher | examiner | administrator | station | exam station "
+        "|\n|---|---|---|---|---|---|---|---|\n";
+    const std::string key(64, 'd'), examKey(64, 'e'), examStation(32, 'e');
+    open.offerCode("a-code-for-exams", "exam room", systemClock()() + 1'000'000, act, "exam");
+    ASSERT_TRUE(open.enrolStation("a-code-for-exams", examStation, examKey, systemClock()()));
+    open.releaseForExams(examStation, act);
     const std::vector<Route> routes = Server::routes();
     std::vector<std::string> lines(routes.size());
     const auto tryRoute = [&](const Route& route) {
@@ -85,10 +89,11 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
             line += fmt::format(" {} |", inTable(route, ask(http, route, path, headers, form)));
         }
         httplib::Client http(school.address());
-        return line +
-               fmt::format(" {} |\n",
-                           inTable(route, ask(http, route, path,
-                                              {{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + key}}, {})));
+        for (const std::string& its : {key, examKey})
+            line += fmt::format(
+                " {} |", inTable(route, ask(http, route, path,
+                                            {{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + its}}, {})));
+        return line + "\n";
     };
     // Another school for each would be slow. What changes nothing goes first, then what changes least: who begins a
     // desk sees no marks from then on.
@@ -210,6 +215,13 @@ TEST_F(SecurityTest, TooLongIsRefusedAndTheNextIsServed) {
     const auto large = http.Post("/api/v1/enrol", std::string((4 << 20) + 1, ' '), "application/json");
     ASSERT_TRUE(large);
     EXPECT_EQ(large->status, 413);
+    // Without a log-in: nested so deep that it ended the server, and with so many keys that it took 14 s.
+    const std::string deep = "{\"code\":" + std::string(120'000, '[') + std::string(120'000, ']') + "}";
+    EXPECT_EQ(http.Post("/api/v1/enrol", deep, "application/json")->status, 400);
+    std::string keys = "{\"code\":1";
+    for (int i = 0; i < 300'000; ++i)
+        keys += fmt::format(",\"{}\":1", i);
+    EXPECT_EQ(http.Post("/api/v1/enrol", keys + "}", "application/json")->status, 400);
     EXPECT_THAT(
         statusOf(raw(school.port(), "GET /" + std::string(20'000, 'a') + " HTTP/1.1\r\nHost: x\r\n" + close + "\r\n")),
         testing::AnyOf("414", "404", "400"));

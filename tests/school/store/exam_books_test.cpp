@@ -90,6 +90,32 @@ TEST_P(BooksTest, OfExamsTellBackAllThatWasPutIn) {
     EXPECT_THAT(asText(books->about("t1", kAdmin)), Not(HasSubstr("argon2id")));
 }
 
+TEST_P(BooksTest, NobodyTakesARunningExamsId) {
+    auto books = filled();
+    makeExam(*books);
+    ExamBooks exams(*books);
+    books->offerCode("another code", "Room 3", kNow + kDay, kAdmin);
+    ASSERT_TRUE(books->enrolStation("another code", id(2), std::string(40, 'x'), kNow));
+    const auto takes = [&](std::uint64_t number) {
+        PushedAttempt work = attempt(number, {"mine"});
+        work.station = id(2), work.person = "s2";
+        return test::errorIdOf([&] { (void)books->push(work); });
+    };
+    // Before the server hears of the sitting: the id can be read at the station meanwhile.
+    EXPECT_EQ(takes(77), "");
+    const ExamSitting one = begins(id(77));
+    exams.add(entry(1, "started"), nullptr, nullptr);
+    EXPECT_TRUE(exams.add(entry(2, "begun", id(77)), &one, nullptr));
+    EXPECT_FALSE(books->attempt(id(77))) << "that was nobody's exam";
+    // And afterwards.
+    EXPECT_EQ(takes(77), "books-invalid");
+    PushedAttempt work = attempt(77, {"a session"});
+    work.assignment = "ex1";
+    EXPECT_TRUE(exams.add(entry(3, "finished", id(77)), nullptr, &work));
+    EXPECT_EQ(books->attempt(id(77))->assignment, "ex1");
+    EXPECT_EQ(takes(78), "") << "any other id";
+}
+
 TEST_P(BooksTest, OfExamsRefuseWhatCannotBeAndWriteNothingOfIt) {
     auto books = filled();
     makeExam(*books);

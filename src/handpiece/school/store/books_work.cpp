@@ -129,6 +129,9 @@ bool Books::push(const PushedAttempt& p) {
     }
     if (!state_->any("SELECT 1 FROM stations WHERE id = $1", p.station))
         throw unknown(*state_->database, "station", p.station);
+    if (state_->any("SELECT 1 FROM exam_sittings WHERE id = $1 AND (station <> $2 OR exam <> $3)", a.id, p.station,
+                    p.assignment))
+        throw invalid("id of an attempt", a.id, "that is an exam's: send another");
     state_->requirePerson(p.person);
     if (!p.assignment.empty() && !state_->any("SELECT 1 FROM assignments WHERE id = $1", p.assignment))
         throw unknown(*state_->database, "assignment", p.assignment);

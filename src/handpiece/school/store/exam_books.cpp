@@ -189,6 +189,7 @@ ExamBooks::End ExamBooks::endOf(const std::string& station) const {
 
 bool ExamBooks::add(const ExamEntry& e, const ExamSitting* begins, const PushedAttempt* attempt) {
     bool isThere = false;
+    std::vector<std::string> orphans;
     {
         Transaction transaction(*state_.database);
         {
@@ -198,9 +199,17 @@ bool ExamBooks::add(const ExamEntry& e, const ExamSitting* begins, const PushedA
             if (isThere && row.text(0) != e.hash)
                 throw changed(*state_.database, "exam's entry", fmt::format("{} of station {}", e.number, e.station));
         }
+        // A sitting's id is chance: work of that id that is there before the sitting is was named so to be in its way.
+        if (!isThere && begins && state_.any("SELECT 1 FROM attempts WHERE id = $1", begins->id)) {
+            const Act act{"station " + e.station, e.received};
+            state_.note(act, "work with an exam's id", begins->id);
+            orphans = state_.removeAttempts({begins->id}, act);
+        }
         if (!isThere) follow(e, begins);
         transaction.commit();
     }
+    for (const std::string& file : orphans)
+        state_.removeFile(file);
     // Also of one that is there: a server may have been killed before it wrote this down.
     if (attempt) (void)books_.push(*attempt);
     return !isThere;

@@ -16,6 +16,14 @@ namespace handpiece::school_server {
 using httplib::Request;
 using httplib::Response;
 
+namespace {
+bool isStudentIn(const school::Books& books, const std::string& schoolClass, const std::string& person) {
+    const std::vector<school::Enrolment> in = books.enrolments(schoolClass);
+    return std::any_of(in.begin(), in.end(),
+                       [&](const school::Enrolment& one) { return one.person == person && one.role == "student"; });
+}
+}  // namespace
+
 std::vector<Entry> stationRoutes(Service* of) {
     using school_wire::toJson;
     const auto upload = [](const Request& request, const school::Station& station) {
@@ -52,11 +60,7 @@ std::vector<Entry> stationRoutes(Service* of) {
              auto open = of->books.take();
              std::vector<school_wire::Task> tasks;
              for (const school::SchoolClass& one : open->classes()) {
-                 const std::vector<school::Enrolment> in = open->enrolments(one.id);
-                 if (std::none_of(in.begin(), in.end(), [&](const school::Enrolment& e) {
-                         return e.person == person && e.role == "student";
-                     }))
-                     continue;
+                 if (!isStudentIn(*open, one.id, person)) continue;
                  for (const school::Assignment& a : open->assignments(one.id))
                      if (a.kind != "exam") tasks.push_back({a.id, a.pack, a.title, a.opens, a.closes});
              }
@@ -68,10 +72,16 @@ std::vector<Entry> stationRoutes(Service* of) {
              pushed.station = station.id;
              pushed.received = of->clock();
              auto open = of->books.take();
-             if (const auto assignment = open->assignment(pushed.assignment); assignment && assignment->kind == "exam")
-                 throw core::Error("an exam's work is told by the service of its station alone", pushed.assignment,
-                                   "hand it over there: handpiece school exam finish")
-                     .as("books-invalid", {"assignment"});
+             if (const auto assignment = open->assignment(pushed.assignment)) {
+                 if (assignment->kind == "exam")
+                     throw core::Error("an exam's work is told by the service of its station alone", pushed.assignment,
+                                       "hand it over there: handpiece school exam finish")
+                         .as("books-invalid", {"assignment"});
+                 if (!isStudentIn(*open, assignment->schoolClass, pushed.person))
+                     throw core::Error("this person is no student of the class that has to do it", pushed.assignment,
+                                       "ask who keeps the class's list; the work stays at the station")
+                         .as("books-invalid", {"assignment"});
+             }
              const bool isNew = open->push(pushed);
              if (isNew) ++of->attempts;
              answer(response, "{}", isNew ? 201 : 200);

@@ -349,6 +349,16 @@ TEST_F(ExamTest, OnlyTheServiceOfAStationTellsOfAnExam) {
     EXPECT_EQ(answer->status, 400);
     EXPECT_THAT(answer->body, HasSubstr("service of its station alone"));
     EXPECT_THAT(http.Get("/api/v1/tasks/s017", headers)->body, Not(HasSubstr("ex1")));
+    // Nor does it count as work of a class for somebody who is no student there.
+    Books(data()).add(school::Assignment{"as9", "c1", exercise, Books(data()).pack(exercise)->rubric, "Block",
+                                         "practice", "", 1, 4'000'000'000'000},
+                      {"server", 1});
+    p.assignment = "as9", p.person = "t1";
+    answer = http.Post("/api/v1/attempts", headers, school_wire::toJson(p), "application/json");
+    EXPECT_EQ(answer->status, 400);
+    EXPECT_THAT(answer->body, HasSubstr("no student of the class"));
+    p.person = "s017";
+    EXPECT_EQ(http.Post("/api/v1/attempts", headers, school_wire::toJson(p), "application/json")->status, 201);
     exam::Entry e;
     e.station = own.station, e.number = 1, e.previous = exam::kNoEntry, e.at = now_, e.kind = "started";
     const exam::SigningKey key = exam::newSigningKey();

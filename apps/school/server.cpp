@@ -15,6 +15,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/people/secret.h"
 #include "school/answers.h"
+#include "school/door.h"
 #include "school/growing_pool.h"
 #include "school/housekeeper.h"
 #include "school/routes.h"
@@ -109,6 +110,18 @@ struct Server::State : Service {
         http->set_tcp_nodelay(true);
         http->set_default_headers(
             {{"X-Content-Type-Options", "nosniff"}, {"Cache-Control", "no-store"}, {"Referrer-Policy", "no-referrer"}});
+        http->set_pre_routing_handler([this](const Request& request, Response& response) {
+            using Result = httplib::Server::HandlerResponse;
+            const auto status = door.refuses(request);
+            if (!status) {
+                guard->admit(remoteOf(request), Door::lengthOf(request));
+                return Result::Unhandled;
+            }
+            response.status = *status;
+            response.set_header("Connection", "close");
+            guard->hearNoMore(remoteOf(request));
+            return Result::Handled;
+        });
         http->set_exception_handler([this](const Request& request, Response& response, std::exception_ptr thrown) {
             ++failed;
             try {
@@ -127,6 +140,9 @@ struct Server::State : Service {
             if (!response.body.empty()) return;
             const char* what = response.status == 404   ? "there is nothing at this address"
                                : response.status == 413 ? "that is too long for one message"
+                               : response.status == 411 ? "tell its length beforehand, in one number"
+                               : response.status == 415 ? "send it as it is, not packed"
+                               : response.status == 431 ? "too many headers, or too long ones"
                                                         : "this cannot be answered";
             const int status = response.status;
             answer(response,
@@ -138,7 +154,7 @@ struct Server::State : Service {
     void add(const Entry& entry) {
         const auto handler = [this, entry](const Request& request, Response& response) {
             ++asked;
-            const SlowGuard::Working working(*guard, request.remote_port);
+            const SlowGuard::Working working(*guard, remoteOf(request));
             const config::LanguageHere here(languageOf(request));
             if (const auto* anyones = std::get_if<Handler>(&entry.answer)) return (*anyones)(request, response);
             if (const auto* stations = std::get_if<StationHandler>(&entry.answer))
@@ -162,12 +178,20 @@ struct Server::State : Service {
         return asked.empty() ? config::words().language() : asked;
     }
 
-    /// Much is taken of who is logged in alone.
-    std::size_t mostOf(const Entry& entry, const Request& request) {
-        if (entry.most <= school_wire::kMostMessage) return entry.most;
+    static std::string remoteOf(const Request& request) {
+        return fmt::format("{} {}", request.remote_addr, request.remote_port);
+    }
+    bool isKnown(const Request& request) {
+        if (request.has_header("Authorization")) return stationBy(request).has_value();
         const std::string token = tokenOf(request);
-        const bool isKnown = !token.empty() && books.take()->personByToken(token, clock()).has_value();
-        return isKnown ? entry.most : school_wire::kMostMessage;
+        return !token.empty() && books.take()->personByToken(token, clock()).has_value();
+    }
+
+    /// Much is taken of stations and of who is logged in alone.
+    std::size_t mostOf(const Entry& entry, const Request& request) {
+        constexpr std::size_t kMostOfStrangers = 128 << 10;
+        if (Door::lengthOf(request) <= kMostOfStrangers || isKnown(request)) return entry.most;
+        return std::min(entry.most, kMostOfStrangers);
     }
 
     /// What was sent, as the library reads it by itself: but of forms more than 8 kB, and of each route no more than
@@ -234,17 +258,21 @@ struct Server::State : Service {
             .as("protocol-other", {said, std::to_string(settings.newestProtocol)});
     }
 
-    school::Station stationOf(const Request& request) {
-        requireSpoken(request);
+    std::optional<school::Station> stationBy(const Request& request) {
         constexpr std::string_view kBearer = "Bearer ";
         const std::string said = request.get_header_value("Authorization");
-        if (said.starts_with(kBearer) && said.size() < 200)
-            if (auto station = books.take()->stationByKey(said.substr(kBearer.size()))) return *station;
+        if (!said.starts_with(kBearer) || said.size() >= 200) return {};
+        return books.take()->stationByKey(said.substr(kBearer.size()));
+    }
+    school::Station stationOf(const Request& request) {
+        requireSpoken(request);
+        if (auto station = stationBy(request)) return *station;
         throw core::Error("the server does not know this station, or no longer", "",
                           "enrol it with a new code: handpiece school enrol")
             .as("not-enrolled");
     }
 
+    const Door door{everyRoute(nullptr)};
     std::unique_ptr<httplib::Server> http;
     socket_t listening = INVALID_SOCKET;
     int port = -1;

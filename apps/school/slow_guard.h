@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Cuts off whoever holds a connection and sends next to nothing: the HTTP library waits for the next byte only, and a
-/// byte a second would keep a thread for hours.
+/// Cuts off whoever holds a connection and sends next to nothing, or more than was let in: the HTTP library waits for
+/// the next byte only, and a byte a second would keep a thread for hours; and it reads a line, or lines of headers, to
+/// their end, wherever that is.
 
 #include <chrono>
 #include <condition_variable>
@@ -10,6 +11,7 @@
 #include <map>
 #include <mutex>
 #include <set>
+#include <string>
 #include <thread>
 
 namespace handpiece::school_server {
@@ -17,6 +19,8 @@ namespace handpiece::school_server {
 class SlowGuard {
   public:
     static constexpr std::uint64_t kLeastBytes = 2000;
+    /// Of a head, TLS with it, before admit() has let it in.
+    static constexpr std::uint64_t kMostHead = 128 << 10;
 
     /// @param listening  socket of this server: connections that came by it are looked at
     /// @param window     in which each has to send or take kLeastBytes, unless its request is being answered
@@ -25,23 +29,28 @@ class SlowGuard {
     SlowGuard(const SlowGuard&) = delete;
     SlowGuard& operator=(const SlowGuard&) = delete;
 
+    /// A request whose head was read: so many bytes may follow, and the next head. `remote`: "address port".
+    void admit(const std::string& remote, std::uint64_t bytes);
+    /// What else it sends is not read: after a refusal nobody takes the rest of it for the next request.
+    void hearNoMore(const std::string& remote);
+
     /// A request that came whole: its answer may take its time.
     class Working {
       public:
-        Working(SlowGuard& guard, int remotePort);
+        Working(SlowGuard& guard, std::string remote);
         ~Working();
         Working(const Working&) = delete;
         Working& operator=(const Working&) = delete;
 
       private:
         SlowGuard& guard_;
-        int port_;
+        std::string remote_;
     };
 
   private:
     struct Watched {
         std::chrono::steady_clock::time_point since{};
-        std::uint64_t bytes = 0;
+        std::uint64_t bytes = 0, mayRead = kMostHead;
     };
     void watch();
     void look(std::chrono::steady_clock::time_point now);
@@ -51,8 +60,9 @@ class SlowGuard {
     std::mutex mutex_;
     std::condition_variable wake_;
     bool ends_ = false;
-    std::multiset<int> working_;                ///< remote ports
-    std::map<std::uint64_t, Watched> watched_;  ///< by the socket's inode
+    std::multiset<std::string> working_;             ///< remotes
+    std::map<std::string, std::uint64_t> admitted_;  ///< since they were last looked at
+    std::map<std::uint64_t, Watched> watched_;       ///< by the socket's inode
     std::thread thread_;
 };
 

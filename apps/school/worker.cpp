@@ -5,6 +5,7 @@
 
 #include <cstdio>
 
+#include "handpiece/app/proving/exam_check.h"
 #include "handpiece/app/proving/proving.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
@@ -21,6 +22,18 @@ school::Score refused(const school::Job& job, std::string why) {
     score.state = "refused", score.passed = "teacher";
     score.reason = std::move(why);
     return score;
+}
+
+/// One byte more, and it is another file; not another work.
+void keepContents(school::Books& books, const school::PushedAttempt& attempt) {
+    for (const std::string& file : attempt.files)
+        try {
+            proving::RecordedInputs inputs(books.files().path(file));
+            inputs.goOn();
+            if (inputs.hasMoved()) books.keepContent(file, inputs.hash());
+        } catch (const core::Error&) {
+            // What cannot be read is refused when it is to be proven, with its reason.
+        }
 }
 
 }  // namespace
@@ -78,6 +91,7 @@ bool Worker::workOnce() {
 school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost) {
     const std::optional<school::PushedAttempt> attempt = books.attempt(job.attempt);
     if (!attempt) return refused(job, "the attempt is gone");
+    keepContents(books, *attempt);
     if (const auto other = books.otherPersonWith(job.attempt))
         return refused(job, "the same session came as another person's work, too");
     std::string exercise = attempt->attempt.exerciseHash;

@@ -481,6 +481,34 @@ TEST_P(BooksTest, ALogInLastsUntilItIsEndedOrTooOldOrItsPersonChanges) {
     EXPECT_THAT(dump() + sql("SELECT max(token_hash) FROM logins"), Not(HasSubstr(token)));
 }
 
+TEST_P(BooksTest, ASessionIsOnePersonsWhateverItsBytes) {
+    auto books = filled();
+    books->offerCode("another code", "Room 3", kNow + kDay, kAdmin);
+    ASSERT_TRUE(books->enrolStation("another code", id(2), std::string(40, 'x'), kNow));
+    const auto deliver = [&](const std::string& station, const std::string& bytes, Milliseconds at) {
+        const Upload upload{station, sha256(bytes), bytes.size()};
+        EXPECT_TRUE(books->append(upload, 0, std::as_bytes(std::span(bytes)), at));
+        books->keepContent(sha256(bytes), "these inputs");
+    };
+    // Somebody who only knows the hash names it first: that accuses nobody.
+    PushedAttempt claimed = attempt(2, {"the work"});
+    claimed.station = id(2), claimed.person = "s2", claimed.received = kNow;
+    books->push(claimed);
+    PushedAttempt own = attempt(1, {"the work"});
+    own.received = kNow + 10;
+    books->push(own);
+    deliver(kStation, "the work", kNow + 11);
+    EXPECT_FALSE(books->otherPersonWith(id(1)));
+    EXPECT_EQ(books->otherPersonWith(id(2)), "s1");
+    // A copy with a byte appended.
+    PushedAttempt copied = attempt(3, {"the work, and a byte"});
+    copied.station = id(2), copied.person = "s3", copied.received = kNow + 20;
+    books->push(copied);
+    deliver(id(2), "the work, and a byte", kNow + 21);
+    EXPECT_EQ(books->otherPersonWith(id(3)), "s1");
+    EXPECT_FALSE(books->otherPersonWith(id(1)));
+}
+
 TEST_P(BooksTest, APersonsDataIsExportedAndTheNameErasedAndTheCodesStay) {
     auto books = filled();
     books->push(attempt(1, {"one"}));

@@ -113,8 +113,12 @@ void RecordedInputs::goOn(std::int64_t most) {
     while (ticks_ + kBlock <= there) {
         std::string bytes = hash_;
         for (const session::Record& record :
-             reader.records(static_cast<std::uint64_t>(ticks_), static_cast<std::size_t>(kBlock)))
+             reader.records(static_cast<std::uint64_t>(ticks_), static_cast<std::size_t>(kBlock))) {
             bytes += bytesOf(record);
+            const std::array<std::int32_t, 3> at{record.position[0], record.position[1], record.position[2]};
+            hasMoved_ = hasMoved_ || at != first_.value_or(at);
+            if (!first_) first_ = at;
+        }
         hash_ = school::sha256(bytes);
         ticks_ += kBlock;
     }

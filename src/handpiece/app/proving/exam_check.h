@@ -3,8 +3,10 @@
 /// @file
 /// An exam's recordings held against what its station noted while they were made. docs/school-exams.md.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -24,11 +26,15 @@ class RecordedInputs {
     void goOn(std::int64_t most = std::int64_t{1} << 53);
     [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
     [[nodiscard]] const std::string& hash() const noexcept { return hash_; }
+    /// Whether the hand ever was elsewhere than at first: what nobody did is not anybody's.
+    [[nodiscard]] bool hasMoved() const noexcept { return hasMoved_; }
 
   private:
     std::filesystem::path session_;
     std::int64_t ticks_ = 0;
     std::string hash_ = exam::kNoEntry;
+    std::optional<std::array<std::int32_t, 3>> first_;
+    bool hasMoved_ = false;
 };
 
 /// What a teacher should know: recordings that are not those that were noted while they were made, that ran faster than

@@ -243,7 +243,10 @@ class Books {
     /// By when they were finished; empty `assignment`: all of the person's.
     [[nodiscard]] std::vector<PushedAttempt> attemptsOf(const std::string& person,
                                                         const std::string& assignment = {}) const;
-    /// Another person whose attempt has one of this one's files too: a session is one person's. None: nobody.
+    /// What a file holds, whatever its bytes: the hash of its inputs.
+    void keepContent(const std::string& file, const std::string& inputs);
+    /// Another person whose attempt has one of this one's sessions, and whose station delivered its bytes before this
+    /// one's did: a session is one person's, and to know a file's hash is not to have it. None: nobody.
     [[nodiscard]] std::optional<std::string> otherPersonWith(const std::string& attempt) const;
     /// In their order, the one that counts last (Teaching::setCounting; without a choice the last one).
     [[nodiscard]] std::vector<Score> scoresOf(const std::string& attempt) const;

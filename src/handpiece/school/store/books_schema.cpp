@@ -217,6 +217,13 @@ UPDATE lti_platforms SET lists = 1 WHERE (SELECT count(*) FROM lti_platforms) = 
 CREATE TABLE lti_people (
   platform TEXT NOT NULL REFERENCES lti_platforms (id), subject TEXT NOT NULL,
   person TEXT NOT NULL REFERENCES people (code), PRIMARY KEY (platform, subject)) STRICT;
+CREATE TABLE contents (file TEXT PRIMARY KEY, inputs TEXT NOT NULL) STRICT;
+CREATE INDEX contents_by_inputs ON contents (inputs);
+CREATE TABLE deliveries (
+  file TEXT NOT NULL, station TEXT NOT NULL, made INT8 NOT NULL, PRIMARY KEY (file, station)) STRICT;
+INSERT INTO deliveries (file, station, made)
+  SELECT f.file, a.station, min(a.received) FROM attempt_files f JOIN attempts a ON a.id = f.attempt
+  JOIN files c ON c.hash = f.file GROUP BY f.file, a.station;
 )sql",
 };
 

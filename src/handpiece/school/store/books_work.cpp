@@ -196,6 +196,10 @@ std::uint64_t Books::received(const Upload& upload, Milliseconds now) {
 bool Books::append(const Upload& upload, std::uint64_t offset, std::span<const std::byte> piece, Milliseconds now) {
     if (!state_->files.append(upload, offset, piece)) return false;
     state_->keepFile(upload.hash, now);
+    Transaction transaction(*state_->database);
+    state_->run("INSERT INTO deliveries (file, station, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", upload.hash,
+                upload.station, now);
+    transaction.commit();
     return true;
 }
 
@@ -242,12 +246,20 @@ std::vector<PushedAttempt> Books::attemptsOf(const std::string& person, const st
     return all;
 }
 
+void Books::keepContent(const std::string& file, const std::string& inputs) {
+    Transaction transaction(*state_->database, Database::Access::beside);
+    state_->run("INSERT INTO contents (file, inputs) VALUES ($1, $2) ON CONFLICT DO NOTHING", file, inputs);
+    transaction.commit();
+}
+
 std::optional<std::string> Books::otherPersonWith(const std::string& attempt) const {
     Statement row = state_->ask(
-        "SELECT a.person FROM attempt_files f JOIN attempt_files g ON g.file = f.file JOIN attempts a ON a.id = "
-        "g.attempt "
-        "JOIN attempts t ON t.id = f.attempt WHERE f.attempt = $1 AND a.person <> t.person ORDER BY a.received, a.id "
-        "LIMIT 1",
+        "SELECT a.person FROM attempt_files f JOIN attempts t ON t.id = f.attempt JOIN attempt_files g ON g.file = "
+        "f.file OR g.file IN (SELECT d.file FROM contents c JOIN contents d ON d.inputs = c.inputs WHERE c.file = "
+        "f.file) JOIN attempts a ON a.id = g.attempt JOIN deliveries y ON y.file = g.file AND y.station = a.station "
+        "LEFT JOIN deliveries x ON x.file = f.file AND x.station = t.station WHERE f.attempt = $1 AND a.person <> "
+        "t.person AND (x.made IS NULL OR y.made < x.made OR (y.made = x.made AND (a.received < t.received OR "
+        "(a.received = t.received AND a.id < t.id)))) ORDER BY y.made, a.id LIMIT 1",
         attempt);
     if (!row.next()) return {};
     return row.text(0);

@@ -64,20 +64,15 @@ Page setFirstPassword(Service& of, const Request& request) {
         return refusedWith(400, fmt::format("{} ({})", e.problem(), e.remedy()));
     }
     const school::Milliseconds now = of.clock();
-    const std::string from = "from " + request.remote_addr, as = "login " + login;
-    {
-        const std::lock_guard lock(of.guessing);
-        if (const std::int64_t wait = std::max(of.throttle.waitMs(from, now), of.throttle.waitMs(as, now)); wait > 0)
-            return refusedWith(429, words()("school.wait", (wait + 999) / 1000));
-        of.throttle.failed(from, now), of.throttle.failed(as, now);
-    }
+    const std::string client = clientOf(request, of.settings);
+    if (const std::int64_t wait = of.waitToGuess(client, login); wait > 0)
+        return refusedWith(429, words()("school.wait", (wait + 999) / 1000));
     const auto open = of.books.take();
     const std::string code = school::typedStationCode(request.get_param_value("code").substr(0, 60));
     if (login.size() > 200 ||
         !school::BooksAccounts(*open).setPasswordByCode(login, code, school::hashOfPassword(fresh), now))
         return refusedWith(401, words()("school-office.first-wrong"));
-    const std::lock_guard lock(of.guessing);
-    of.throttle.succeeded(from), of.throttle.succeeded(as);
+    of.guessedRight(client, login);
     return {200, firstPage({}, {}, true)};
 }
 

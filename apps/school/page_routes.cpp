@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // Log-in, and what persons see of classes and work.
-#include <algorithm>
-#include <mutex>
-
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/people/secret.h"
@@ -25,14 +22,8 @@ std::string logInPage(Service& of, const std::string& login = {}, const std::str
 Page logIn(Service& of, const Request& request) {
     const std::string login = request.get_param_value("login"), password = request.get_param_value("password");
     const school::Milliseconds now = of.clock();
-    const std::string from = "from " + request.remote_addr, as = "login " + login;
-    std::int64_t wait = 0;
-    {
-        const std::lock_guard lock(of.guessing);
-        wait = std::max(of.throttle.waitMs(from, now), of.throttle.waitMs(as, now));
-        // Counted before it is looked at: a hundred guesses at once are a hundred.
-        if (wait <= 0) of.throttle.failed(from, now), of.throttle.failed(as, now);
-    }
+    const std::string client = clientOf(request, of.settings);
+    const std::int64_t wait = of.waitToGuess(client, login);
     if (wait > 0) return {429, logInPage(of, login, config::words()("school.wait", (wait + 999) / 1000)), {}, {}};
     constexpr std::size_t kMostPassword = 256;
     // Not held while the password is worked on, which takes long.
@@ -45,10 +36,7 @@ Page logIn(Service& of, const Request& request) {
             school::spendPasswordTime(password);
     }
     if (!isRight) return {401, logInPage(of, login, config::words()("school.wrong-login")), {}, {}};
-    {
-        const std::lock_guard lock(of.guessing);
-        of.throttle.succeeded(from), of.throttle.succeeded(as);
-    }
+    of.guessedRight(client, login);
     if (school::BooksAccounts(*of.books.take()).isSuspended(person->code))
         return {403, logInPage(of, login, config::words()("school-office.is-suspended"))};
     const std::string token = school::newSecret();

@@ -29,6 +29,9 @@ struct Entry {
     [[nodiscard]] Caller caller() const { return static_cast<Caller>(answer.index()); }
 };
 
+/// The address that asks: where a proxy of ours stands between, what that saw. Nobody else's word for it is taken.
+[[nodiscard]] std::string clientOf(const httplib::Request& request, const Settings& settings);
+
 // Of `service`, which may be null where nobody calls them.
 [[nodiscard]] std::vector<Entry> generalRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> stationRoutes(Service* service);

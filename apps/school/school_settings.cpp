@@ -72,6 +72,7 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.signOnSecret, variable("HANDPIECE_SCHOOL_SIGN_ON_SECRET"));
     fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
     if (s.signOnProxies.empty()) s.signOnProxies = partsOf(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXIES"));
+    if (s.proxies.empty()) s.proxies = partsOf(variable("HANDPIECE_SCHOOL_PROXIES"));
     for (const Count& of : kCounts)
         if (const std::string text = variable(of.variable); !(s.*of.value) && !text.empty())
             s.*of.value = countIn(text, of);
@@ -80,7 +81,7 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     if (!s.file.empty()) {
         const config::Table file = config::Table::read(s.file);
         file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "connections", "address",
-                        "sign_on_proxies", "sign_on_secret", "sign_on_header"});
+                        "proxies", "sign_on_proxies", "sign_on_secret", "sign_on_header"});
         fill(s.data, file.text("data").value_or(""));
         fill(s.database, file.text("database").value_or(""));
         fill(s.listen, file.text("listen").value_or(""));
@@ -90,6 +91,7 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
         fill(s.signOnSecret, file.text("sign_on_secret").value_or(""));
         fill(s.signOnHeader, file.text("sign_on_header").value_or(""));
         if (s.signOnProxies.empty()) s.signOnProxies = file.texts("sign_on_proxies");
+        if (s.proxies.empty()) s.proxies = file.texts("proxies");
         for (const Count& of : kCounts)
             if (const auto count = file.integer(of.key)) {
                 if (*count < static_cast<std::int64_t>(of.least) || *count > static_cast<std::int64_t>(of.most))

@@ -17,6 +17,7 @@ struct SchoolSettings {
     std::string file{};  ///< where the rest stands (TOML)
     std::string data{}, database{}, listen{}, certificate{}, key{};
     std::string address{};                       ///< as browsers know it
+    std::vector<std::string> proxies{};          ///< addresses of proxies whose X-Forwarded-For is believed
     std::vector<std::string> signOnProxies{};    ///< addresses of proxies that vouch for who logs in
     std::string signOnSecret{}, signOnHeader{};  ///< file with what they know; in which they name who logs in
     std::optional<std::size_t> workers{}, connections{};

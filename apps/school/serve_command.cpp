@@ -61,6 +61,7 @@ void serve(const ServeOptions& asked) {
     settings.address = o.address;
     while (settings.address.ends_with('/'))
         settings.address.pop_back();
+    settings.proxies = o.proxies;
     settings.signOn.proxies = o.signOnProxies, settings.signOn.header = o.signOnHeader;
     if (!o.signOnSecret.empty()) settings.signOn.secret = secretIn(o.signOnSecret);
     if (o.signOnProxies.empty() != settings.signOn.secret.empty())
@@ -110,6 +111,8 @@ void addServeCommand(cli::Command& app) {
     command.option("--connections", o.connections, "to the database at once, at most; who comes beyond waits (60)")
         .check(cli::range(std::size_t{1}, kMostConnections));
     command.option("--address", o.given.address, "as browsers know it, https://school.example: for log-ins by LTI");
+    command.option("--proxy", o.given.proxies, "address of a proxy whose X-Forwarded-For is believed; several times")
+        .takeAll();
     command
         .option("--sign-on-proxy", o.given.signOnProxies,
                 "address of a proxy that vouches for who logs in; several times")

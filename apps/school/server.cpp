@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <chrono>
@@ -45,6 +46,33 @@ std::vector<Entry> everyRoute(Service* service) {
 }
 
 }  // namespace
+
+std::string clientOf(const Request& request, const Settings& settings) {
+    const auto isOurs = [&](const std::string& address) {
+        const auto in = [&](const std::vector<std::string>& all) {
+            return std::find(all.begin(), all.end(), address) != all.end();
+        };
+        return in(settings.proxies) || in(settings.signOn.proxies);
+    };
+    if (!isOurs(request.remote_addr)) return request.remote_addr;
+    // Each proxy adds whom it saw at the end; what stands before that anybody may have written.
+    std::string all;
+    for (auto [at, end] = request.headers.equal_range("X-Forwarded-For"); at != end; ++at)
+        all += "," + at->second;
+    while (!all.empty()) {
+        const std::size_t comma = all.rfind(',');
+        std::string last = all.substr(comma + 1);
+        last.erase(0, last.find_first_not_of(' '));
+        last.erase(last.find_last_not_of(' ') + 1);
+        constexpr std::size_t kMostAddress = 45;  // IPv6 with an IPv4 in it
+        if (last.empty() || last.size() > kMostAddress ||
+            last.find_first_not_of("0123456789abcdefABCDEF.:") != last.npos)
+            break;
+        if (!isOurs(last)) return last;
+        all.resize(comma);
+    }
+    return request.remote_addr;
+}
 
 Clock systemClock() {
     return [] {

@@ -34,6 +34,7 @@ struct Settings {
     std::size_t workers = 1;                 ///< that cut sessions again; 0: other machines do
     std::string address{};  ///< as browsers know it, without a slash at its end; empty: no log-in by LTI
     SignOn signOn{};
+    std::vector<std::string> proxies{};  ///< addresses whose X-Forwarded-For is believed; those of signOn are, too
     /// Versions of the messages that it takes from stations.
     int oldestProtocol = school_wire::kOldestProtocol, newestProtocol = school_wire::kProtocol;
     bool keepsHouse = true;  ///< what is over its time goes, and grades go out

@@ -3,6 +3,7 @@
 /// @file
 /// What all routes of a server use.
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <mutex>
@@ -25,6 +26,21 @@ struct Service {
           reviews(s.data / "reviews", books, tasks) {}
 
     [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
+    /// Before a guess at a login's secret, which counts at once: a hundred at a time are a hundred. How long it has to
+    /// wait [ms]; 0: it may.
+    [[nodiscard]] std::int64_t waitToGuess(const std::string& client, const std::string& login) {
+        const school::Milliseconds now = clock();
+        const std::string from = "from " + client, as = "login " + login;
+        const std::lock_guard lock(guessing);
+        const std::int64_t wait =
+            std::max(throttle.waitMs(from, now, school::kFreeOfAddress), throttle.waitMs(as, now));
+        if (wait <= 0) throttle.failed(from, now), throttle.failed(as, now);
+        return wait;
+    }
+    void guessedRight(const std::string& client, const std::string& login) {
+        const std::lock_guard lock(guessing);
+        throttle.takenBack("from " + client), throttle.succeeded("login " + login);
+    }
 
     const Settings settings;
     const Clock clock;

@@ -124,6 +124,10 @@ TEST(Throttling, LetsFiveGuessesPassAndThenEverFewer) {
     EXPECT_LT(guesses, 115);
     EXPECT_GT(guesses, 90) << "and who forgot theirs is not shut out for good";
     EXPECT_EQ(throttle.waitMs("sato", day), 0) << "nobody else waits";
+    EXPECT_GT(throttle.waitMs("mori", day), 0);
+    EXPECT_EQ(throttle.waitMs("mori", day, 100'000), 0) << "as an address, behind which a class sits";
+    throttle.takenBack("mori");
+    EXPECT_GT(throttle.waitMs("mori", day), 0) << "one of many";
     throttle.succeeded("mori");
     EXPECT_EQ(throttle.waitMs("mori", day), 0);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What each person sees of a school in a browser, and what not.
 #include "handpiece/school/store/lti_books.h"
+#include "school/routes.h"
 #include "school/server/pages_fixture.h"
 
 namespace handpiece::school_server {
@@ -127,6 +128,39 @@ TEST_F(PagesTest, PasswordsCannotBeGuessedAtSpeed) {
     EXPECT_THAT(browser.post("/login", httplib::Params{{"login", "t1"}, {"password", "x"}})->body,
                 HasSubstr("Try again in"));
     EXPECT_TRUE(browser.cookie().empty());
+}
+
+TEST_F(PagesTest, AClassBehindOneAddressIsNotLockedOutAndNoOwnLogInForgivesGuesses) {
+    School school(data());
+    int wrong = 0;
+    // Each at another login: after every tenth the guesser logs in as themselves, which was to forget it all.
+    for (int status = 401; status == 401 && wrong < 100;) {
+        Browser browser(school.address());
+        status = browser.logIn(fmt::format("somebody{}", wrong).c_str(), "wrong password");
+        if (status == 401 && ++wrong % 10 == 0)
+            EXPECT_EQ(Browser(school.address()).logIn("t1"), wrong < 60 ? 303 : 429);
+    }
+    EXPECT_EQ(wrong, school::kFreeOfAddress);
+}
+
+TEST_F(PagesTest, OnlyAProxyOfOursSaysWhoAsks) {
+    const auto client = [](const std::vector<std::string>& proxies, const std::vector<std::string>& said) {
+        httplib::Request request;
+        request.remote_addr = "10.0.0.1";
+        for (const std::string& one : said)
+            request.headers.emplace("X-Forwarded-For", one);
+        Settings settings;
+        settings.proxies = proxies;
+        return clientOf(request, settings);
+    };
+    EXPECT_EQ(client({}, {"1.2.3.4"}), "10.0.0.1");
+    EXPECT_EQ(client({"10.0.0.2"}, {"1.2.3.4"}), "10.0.0.1");
+    EXPECT_EQ(client({"10.0.0.1"}, {}), "10.0.0.1");
+    EXPECT_EQ(client({"10.0.0.1"}, {"1.2.3.4"}), "1.2.3.4");
+    EXPECT_EQ(client({"10.0.0.1"}, {"6.6.6.6, 1.2.3.4"}), "1.2.3.4") << "what stands before anybody may have written";
+    EXPECT_EQ(client({"10.0.0.1", "10.0.0.2"}, {"6.6.6.6,2001:db8::7 , 10.0.0.2"}), "2001:db8::7");
+    for (const char* nonsense : {"unknown", "", "1.2.3.4 or so", "<script>"})
+        EXPECT_EQ(client({"10.0.0.1"}, {nonsense}), "10.0.0.1") << nonsense;
 }
 
 TEST_F(PagesTest, ALogInEnds) {

@@ -5,20 +5,19 @@
 
 namespace handpiece::school {
 namespace {
-constexpr int kFree = 5;
 constexpr std::int64_t kLongestMs = 900'000;
 }  // namespace
 
-std::int64_t waitAfterFailures(int failures) {
-    if (failures < kFree) return 0;
-    const int doubled = std::min(failures - kFree + 1, 20);
+std::int64_t waitAfterFailures(int failures, int free) {
+    if (failures < free) return 0;
+    const int doubled = std::min(failures - free + 1, 20);
     return std::min(kLongestMs, std::int64_t{1000} << doubled);
 }
 
-std::int64_t Throttle::waitMs(const std::string& key, std::int64_t now) const {
+std::int64_t Throttle::waitMs(const std::string& key, std::int64_t now, int free) const {
     const auto found = failures_.find(key);
     if (found == failures_.end()) return 0;
-    const std::int64_t wait = waitAfterFailures(found->second.count), since = now - found->second.last;
+    const std::int64_t wait = waitAfterFailures(found->second.count, free), since = now - found->second.last;
     return since < 0 ? wait : std::max<std::int64_t>(0, wait - since);
 }
 
@@ -35,6 +34,11 @@ void Throttle::failed(const std::string& key, std::int64_t now) {
 
 void Throttle::succeeded(const std::string& key) {
     failures_.erase(key);
+}
+
+void Throttle::takenBack(const std::string& key) {
+    if (const auto found = failures_.find(key); found != failures_.end() && --found->second.count <= 0)
+        failures_.erase(found);
 }
 
 }  // namespace handpiece::school

@@ -10,9 +10,11 @@
 
 namespace handpiece::school {
 
-/// How long one waits after so many failures in a row [ms]: nothing for the first five, then 2, 4, 8 s and so on to 15
+/// Failures that cost nothing: of a login; of an address, behind which a whole class may sit.
+inline constexpr int kFreeOfLogin = 5, kFreeOfAddress = 60;
+/// How long one waits after so many failures in a row [ms]: nothing for the free ones, then 2, 4, 8 s and so on to 15
 /// minutes.
-[[nodiscard]] std::int64_t waitAfterFailures(int failures);
+[[nodiscard]] std::int64_t waitAfterFailures(int failures, int free = kFreeOfLogin);
 
 /// Failures by key (a login, an address: ask for both). A failure is forgotten an hour after the last one; of more than
 /// `kMostKeys` the one that failed longest ago is. One thread.
@@ -23,9 +25,11 @@ class Throttle {
 
     /// How long this one has to wait still [ms]; 0: try. A clock that was set back makes nobody wait longer than the
     /// longest wait.
-    [[nodiscard]] std::int64_t waitMs(const std::string& key, std::int64_t now) const;
+    [[nodiscard]] std::int64_t waitMs(const std::string& key, std::int64_t now, int free = kFreeOfLogin) const;
     void failed(const std::string& key, std::int64_t now);
     void succeeded(const std::string& key);
+    /// One failure less: an address's own log-in forgives no guess at others'.
+    void takenBack(const std::string& key);
     [[nodiscard]] std::size_t keys() const noexcept { return failures_.size(); }
 
   private:

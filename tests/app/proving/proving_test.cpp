@@ -112,6 +112,11 @@ TEST_F(Proving, HonestWorkIsWorthWhatItIsWorth) {
     EXPECT_EQ(boasted.state, "proven");
     EXPECT_EQ(boasted.score, first.score);
     EXPECT_THAT(boasted.reason, HasSubstr("its station said"));
+    // Nor does another device than the recording's own.
+    said.attempt.score = first.score, said.attempt.device = "a hand of steel";
+    const school::Score felt = prove(said, files, task_, rubric_);
+    EXPECT_EQ(felt.state, "proven");
+    EXPECT_THAT(felt.reason, HasSubstr("said that it was felt by a hand of steel, and its recording says"));
 }
 
 TEST_F(Proving, AnotherSessionIsNotTheOneThatWasNamed) {

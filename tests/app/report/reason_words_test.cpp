@@ -62,6 +62,8 @@ TEST(ReasonWords, SeveralInOneAndWhatHasWordsOfItsOwn) {
               words("reason.of-session", "2", words("reason.unknown-bur", "B")));
     EXPECT_EQ(reasonOf("its station said 99 of 100, passed: teacher"),
               words("reason.station-said", "99", "100", words.text("assessment.teacher")));
+    EXPECT_EQ(reasonOf("its station said that it was felt by touch, and its recording says simulated"),
+              words("reason.other-device", "touch", "simulated"));
     EXPECT_EQ(reasonOf("not cut again"), words.text("said.not-cut-again"));
     for (const char* unknown : {"", "{}", "; ", "a file's name: it is damaged", "session ; : "})
         EXPECT_EQ(reasonOf(unknown), unknown) << "stays as it is";

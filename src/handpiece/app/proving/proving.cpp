@@ -54,6 +54,10 @@ class Case {
         }
         score_.state = "proven";
         score_.reason = saidOtherwise();
+        if (const std::string& felt = result.assessment.context.device;
+            !attempt_.device.empty() && attempt_.device != felt)
+            score_.reason += fmt::format("{}its station said that it was felt by {}, and its recording says {}",
+                                         score_.reason.empty() ? "" : "; ", attempt_.device, felt);
         return std::move(score_);
     }
 

@@ -126,6 +126,7 @@ constexpr const char* kReasons[] = {
     "reason.other-number",
     "reason.other-session",
     "reason.station-said",
+    "reason.other-device",
     "reason.attempt-gone",
     "reason.another-person",
     "reason.no-exercise",

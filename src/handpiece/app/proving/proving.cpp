@@ -33,6 +33,7 @@ class Case {
             return refused(fmt::format("it was done on exercise {}, and the assignment's is {}", attempt_.exerciseHash,
                                        rubric::hashText(tasks::contentHash(task_))));
         if (const std::string other = otherThanNamed(); !other.empty()) return refused(other);
+        std::string felt;  // by which device, as the recording has it
         try {
             std::vector<std::string> conditions;
             std::vector<assessment::ChainLink> chain;
@@ -47,6 +48,7 @@ class Case {
             const assessment::Result result =
                 assessment::scoreWork(work, task_, rubric_, core::part(progress, 0.9, 1.0));
             take(result);
+            felt = result.assessment.context.device;
             if (!work.isProven) return refused(work.proof);
         } catch (const core::Error& e) {
             if (e.problem() == "cancelled") throw;
@@ -54,8 +56,7 @@ class Case {
         }
         score_.state = "proven";
         score_.reason = saidOtherwise();
-        if (const std::string& felt = result.assessment.context.device;
-            !attempt_.device.empty() && attempt_.device != felt)
+        if (!attempt_.device.empty() && attempt_.device != felt)
             score_.reason += fmt::format("{}its station said that it was felt by {}, and its recording says {}",
                                          score_.reason.empty() ? "" : "; ", attempt_.device, felt);
         return std::move(score_);

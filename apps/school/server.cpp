@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstring>
 #include <string_view>
+#include <utility>
 #include <variant>
 
 #include "handpiece/base/config/words.h"
@@ -34,6 +35,9 @@ using school::Milliseconds;
 /// Reading and writing of one message, and between two on one connection.
 constexpr auto kPatience = std::chrono::seconds(20);
 constexpr time_t kKeepAliveS = 5;
+
+/// That the request of this thread was refused at the door.
+thread_local bool refusedNow = false;
 
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
@@ -147,8 +151,12 @@ struct Server::State : Service {
             }
             response.status = *status;
             response.set_header("Connection", "close");
-            guard->hearNoMore(remoteOf(request));
+            refusedNow = true;
             return Result::Handled;
+        });
+        // When it is answered: nothing that follows is taken for the next request.
+        http->set_logger([this](const Request& request, const Response&) {
+            if (std::exchange(refusedNow, false)) guard->hearNoMore(remoteOf(request));
         });
         http->set_exception_handler([this](const Request& request, Response& response, std::exception_ptr thrown) {
             ++failed;

@@ -137,8 +137,9 @@ TEST_F(PagesTest, AClassBehindOneAddressIsNotLockedOutAndNoOwnLogInForgivesGuess
     for (int status = 401; status == 401 && wrong < 100;) {
         Browser browser(school.address());
         status = browser.logIn(fmt::format("somebody{}", wrong).c_str(), "wrong password");
-        if (status == 401 && ++wrong % 10 == 0)
+        if (status == 401 && ++wrong % 10 == 0) {
             EXPECT_EQ(Browser(school.address()).logIn("t1"), wrong < 60 ? 303 : 429);
+        }
     }
     EXPECT_EQ(wrong, school::kFreeOfAddress);
 }

@@ -199,6 +199,9 @@ TEST_P(BooksInTroubleTest, RefuseANewerVersionAndAnothersDatabase) {
 // What version 1 was.
 TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
     { filled()->push(attempt(1)); }
+    // What version one did not know.
+    sql("UPDATE stations SET kind = 'practice'");
+    sql("DELETE FROM deliveries");
     const std::string before = dump();
     const auto schema = [&] {
         return isPostgres()

@@ -7,6 +7,7 @@
 
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <map>
 
 #include "handpiece/assess/hand/hand.h"
@@ -29,8 +30,9 @@ Mouth& mouthAt(int fdi) {
 }
 
 const char* nameOf(Idle idle) {
-    constexpr const char* kNames[] = {"cuts",     "off tooth", "at stop", "pass done", "off stroke",
-                                      "no reach", "through",   "on way",  "stalled",   "held"};
+    constexpr const char* kNames[] = {"cuts",    "off tooth", "at stop", "pass done", "off stroke", "no reach",
+                                      "through", "on way",    "stalled", "hurries",   "held"};
+    static_assert(std::size(kNames) == static_cast<std::size_t>(Idle::held) + 1);
     return kNames[static_cast<int>(idle)];
 }
 

@@ -245,7 +245,15 @@ class ExamSchoolTest : public OddSchoolTest {
         const std::vector<school::Enrolment> in{{"c1", "s017", "student"}, {"c1", "t1", "teacher"}};
         open.enrol(in, act);
         signExamThere(open, data_, "ex1");
+        open.offerCode(kForExams, "exam room", nowMs() + kHourMs, act, "exam");
     }
+    /// For exams, and released.
+    void enrol() {
+        school_exam::enrolForExams(address(), kForExams, station_);
+        Books open = books();
+        open.releaseForExams(exam::stationIn(station_).station, {"server", 1});
+    }
+    static constexpr const char* kForExams = "ABC-DEF-GHJ-KMT";
     fs::path station_ = folder_.path() / "exam";
 };
 INSTANTIATE_TEST_SUITE_P(OnBoth, ExamSchoolTest, testing::Values("sqlite", "postgres"),
@@ -263,7 +271,7 @@ TEST_P(ExamSchoolTest, RestoredOnANewMachineItsStationsGoOnTakingPacks) {
     };
     {
         const auto server = serve();
-        school_exam::enrolForExams(address(), kCode, station_);
+        enrol();
         EXPECT_THAT(school_exam::fetchExams(station_).packs, SizeIs(1));
         EXPECT_EQ(server->terminate(), 0);
     }
@@ -298,7 +306,7 @@ TEST_P(ExamSchoolTest, RestoredOnANewMachineItsStationsGoOnTakingPacks) {
 
 TEST_P(ExamSchoolTest, AnExamBeginsInItsTimeByTheStationsClockAndSaysWhatThatIs) {
     const auto server = serve();
-    school_exam::enrolForExams(address(), kCode, station_);
+    enrol();
     EXPECT_THAT(school_exam::fetchExams(station_).packs, SizeIs(1));
     for (const std::chrono::seconds ahead : {-kDay, kDay, 0s}) {
         const fs::path at = folder_.path() / "exam.sock";

@@ -93,6 +93,7 @@ export class Browser {
         this.send("Browser.close").catch(() => {});
         await Promise.race([gone, new Promise((done) => setTimeout(done, 5000))]);
         if (this.process.exitCode === null) this.process.kill("SIGKILL");
-        rmSync(this.folder, { recursive: true, force: true, maxRetries: 5 });
+        // Its helpers write there for a moment longer.
+        rmSync(this.folder, { recursive: true, force: true, maxRetries: 20, retryDelay: 250 });
     }
 }

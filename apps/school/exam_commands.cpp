@@ -324,7 +324,10 @@ void addServicesExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     service(enrol);
     enrol.option("SERVER", o.server, "its address, as https://school.example:8620").required();
     enrol.option("CODE", o.code, "a one-time code: handpiece school code --exam").required();
-    enrol.callback([options] { school_exam::enrolForExams(options->server, options->code, options->service); });
+    enrol.callback([options] {
+        school_exam::enrolForExams(options->server, options->code, options->service);
+        fmt::print("enrolled; it holds exams when an administrator has released it (the office's page of stations)\n");
+    });
     cli::Command fetches = top.subcommand("fetch", "Fetches the exams that can still be begun" + where);
     service(fetches);
     fetches.callback([options] { fetch(*options); });

@@ -12,6 +12,7 @@
 #include "handpiece/app/input/way_over.h"
 #include "handpiece/app/input/working_position.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
 
 namespace handpiece::input {
@@ -398,7 +399,7 @@ void PointerController::follow(const messages::HapticSample& sample) {
         removed += v;
     const bool cuts = removed > std::exchange(s.removedMm3, removed);
     if (const double dtS = sample.timeS - s.nowS; dtS > 0.0)
-        s.mmS += ((p - s.place()).norm() / dtS - s.mmS) * (1.0 - std::exp(-dtS / kSpeedS));
+        s.mmS += ((p - s.place()).norm() / dtS - s.mmS) * (1.0 - core::exp(-dtS / kSpeedS));
     s.proxyMm = p;
     s.nowS = sample.timeS;
     const bool isLittle = device::kPaintMm2SPerN * s.loadN < kLittleMm * s.mmS;

@@ -203,7 +203,8 @@ void addBooksCommands(cli::Command& app) {
     code.option("--hours", o.hours, "that it holds")
         .check(cli::range(std::size_t{1}, std::size_t{10000}))
         .showDefault();
-    code.flag("--exam", o.isForExams, "of a station that holds exams: it is released by itself, when it has enrolled");
+    code.flag("--exam", o.isForExams,
+              "of a station that holds exams; when it has enrolled: handpiece school exam release");
     code.callback([options] { offerCode(*options); });
 
     cli::Command person = app.subcommand("person", "Adds a person" + where);

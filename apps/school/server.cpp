@@ -145,13 +145,14 @@ struct Server::State : Service {
         http->set_pre_routing_handler([this](const Request& request, Response& response) {
             using Result = httplib::Server::HandlerResponse;
             const auto status = door.refuses(request);
+            // Of each request anew: an answer that nobody took was not logged.
+            refusedNow = status.has_value();
             if (!status) {
                 guard->admit(remoteOf(request), Door::lengthOf(request));
                 return Result::Unhandled;
             }
             response.status = *status;
             response.set_header("Connection", "close");
-            refusedNow = true;
             return Result::Handled;
         });
         // When it is answered: nothing that follows is taken for the next request.

@@ -82,7 +82,7 @@ void eachConnection(int listening, const std::function<void(int fd, const std::s
     }
 }
 
-/// More than that a head grows meanwhile only as fast as it comes.
+/// Between two looks: what a head without end can grow meanwhile.
 constexpr auto kOftenEnough = std::chrono::milliseconds(100);
 
 }  // namespace

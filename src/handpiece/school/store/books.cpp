@@ -517,7 +517,6 @@ std::optional<Assignment> Books::assignment(const std::string& id) const {
 // Stations.
 
 namespace {
-constexpr const char* kStationKinds = "practice or exam";
 Station stationOf(const Statement& row) {
     return {row.text(0), row.text(1), row.integer(2), row.integer(3), row.text(4), row.integer(5)};
 }
@@ -525,7 +524,7 @@ Station stationOf(const Statement& row) {
 
 void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
                       const std::string& kind) {
-    if (kind != "practice" && kind != "exam") throw invalid("kind of station", kind, kStationKinds);
+    if (kind != "practice" && kind != "exam") throw invalid("kind of station", kind, "write practice or exam");
     if (code.size() < 8) throw invalid("code of a station", code, "use 8 characters or more, by chance");
     Transaction transaction(*state_->database);
     if (!state_->any("INSERT INTO station_codes (hash, name, expires, station, kind) VALUES ($1, $2, $3, '', $4) "

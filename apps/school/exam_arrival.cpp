@@ -5,7 +5,6 @@
 
 #include <algorithm>
 
-#include "handpiece/app/proving/exam_check.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/exam/lines.h"
@@ -148,22 +147,17 @@ bool takeEntry(Books& books, const std::string& station, std::string_view joined
     }
 }
 
-void checkExam(Books& books, const school::PushedAttempt& attempt, std::span<const std::filesystem::path> sessions,
-               Milliseconds now) {
+std::optional<sandboxed::ExamNotes> examNotes(Books& books, const school::PushedAttempt& attempt) {
     ExamBooks exams(books);
     const auto sitting = exams.sitting(attempt.attempt.id);
-    if (!sitting) return;
+    if (!sitting) return {};
     const exam::Pack pack = packOf(exams, *sitting);
-    std::vector<std::string> locked = pack.locked;
+    sandboxed::ExamNotes notes{pack.locked, {}};
     for (const exam::Candidate& one : pack.candidates)
-        if (one.code == sitting->candidate) locked = exam::lockedFor(pack, one, {});
-    std::vector<std::string> doubts;
-    try {
-        doubts = proving::recordingDoubts(locked, parsed(exams.entriesOf(sitting->id)), sessions);
-    } catch (const core::Error& e) {
-        doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
-    }
-    exams.setDoubts(sitting->id, doubts, now);
+        if (one.code == sitting->candidate) notes.locked = exam::lockedFor(pack, one, {});
+    for (school::ExamEntry& one : exams.entriesOf(sitting->id))
+        notes.entries.push_back(std::move(one.text));
+    return notes;
 }
 
 std::vector<std::string> doubtsOf(Books& books, const school::ExamSitting& sitting) {

@@ -5,9 +5,10 @@
 /// them, receipts. docs/school-exams.md.
 
 #include <filesystem>
-#include <span>
+#include <optional>
 #include <string>
 
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/school/exam/receipt.h"
 #include "handpiece/school/store/exam_books.h"
 
@@ -25,9 +26,8 @@ school::ExamPack signExam(school::Books& books, const std::string& exam, const e
 /// for a pack or candidate that is not this school's.
 bool takeEntry(school::Books& books, const std::string& station, std::string_view joined, school::Milliseconds now);
 
-/// Of an exam's attempt whose recordings came: notes what a teacher should know. Nothing for other attempts.
-void checkExam(school::Books& books, const school::PushedAttempt& attempt,
-               std::span<const std::filesystem::path> sessions, school::Milliseconds now);
+/// What recordings of an exam are held against; nothing for other attempts.
+[[nodiscard]] std::optional<sandboxed::ExamNotes> examNotes(school::Books& books, const school::PushedAttempt& attempt);
 /// All of it: what was found in the recordings, and what the chain and other stations say.
 [[nodiscard]] std::vector<std::string> doubtsOf(school::Books& books, const school::ExamSitting& sitting);
 

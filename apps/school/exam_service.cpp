@@ -16,7 +16,7 @@
 #include <thread>
 
 #include "handpiece/app/assessment/score_work.h"
-#include "handpiece/assess/task/task.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -112,7 +112,7 @@ struct ExamService::State {
         http.Post("/look", on([this](const Request& r) {
                       const exam::Sitting sitting = exams.look(field(r, "candidate"), exam::kRubricFormat, clock());
                       const exam::Pack& pack = sitting.exam.pack;
-                      const auto exercise = exerciseOf(sitting);
+                      const sandboxed::Exercise& of = exerciseOf(sitting);
                       return nlohmann::ordered_json{
                           {"title", pack.title},
                           {"closes_ms", pack.closes},
@@ -120,10 +120,10 @@ struct ExamService::State {
                           {"extra_percent", sitting.candidate.extraPercent},
                           {"pause_minutes", sitting.candidate.pauseMinutes},
                           {"time_ms", sitting.deadline - sitting.began},
-                          {"locked", exam::lockedFor(pack, sitting.candidate, exercise.lockedHelps)},
+                          {"locked", exam::lockedFor(pack, sitting.candidate, of.lockedHelps)},
                           {"again", sitting.again},
-                          {"titles", exercise.title},
-                          {"instructions", exercise.instructions}}
+                          {"titles", of.title},
+                          {"instructions", of.instructions}}
                           .dump();
                   }));
         http.Get("/ending", on([this](const Request& r) { return exam::joined(exams.endOf(field(r, "sitting"))); }));
@@ -212,16 +212,13 @@ struct ExamService::State {
         response.set_content("", "text/plain");
     }
 
-    static cases::Exercise exerciseOf(const exam::Sitting& sitting) {
-        return tasks::readTask(sitting.exam.exercise).toothCase.exercise.value_or(cases::Exercise{});
-    }
-    /// A desk is asked for every second or two: the exercise is read once.
-    const std::vector<std::string>& lockedIn(const exam::Sitting& sitting) const {
-        if (lockedOf != sitting.id) {
-            locked = exam::lockedFor(sitting.exam.pack, sitting.candidate, exerciseOf(sitting).lockedHelps);
-            lockedOf = sitting.id;
+    /// Read once: a desk is asked for every second or two.
+    const sandboxed::Exercise& exerciseOf(const exam::Sitting& sitting) const {
+        if (exerciseHash != sitting.exam.pack.exercise || exerciseHash.empty()) {
+            exercise = sandboxed::exercise(sitting.exam.exercise);
+            exerciseHash = sitting.exam.pack.exercise;
         }
-        return locked;
+        return exercise;
     }
     Desk desk() const {
         Desk d;
@@ -230,7 +227,7 @@ struct ExamService::State {
             d.sitting = s->id, d.exam = s->exam.pack.exam, d.title = s->exam.pack.title;
             d.began = s->began, d.deadline = s->deadline, d.again = s->again;
             d.extraPercent = s->candidate.extraPercent, d.pauseMinutes = s->candidate.pauseMinutes;
-            d.locked = lockedIn(*s);
+            d.locked = exam::lockedFor(s->exam.pack, s->candidate, exerciseOf(*s).lockedHelps);
         }
         return d;
     }
@@ -291,9 +288,9 @@ struct ExamService::State {
     const school_server::Clock clock;
     const OneService one;
     std::mutex mutex;
-    exam::Invigilation exams;                 ///< guarded by `mutex`
-    mutable std::string lockedOf;             ///< sitting; guarded by `mutex`
-    mutable std::vector<std::string> locked;  ///< guarded by `mutex`
+    exam::Invigilation exams;          ///< guarded by `mutex`
+    mutable std::string exerciseHash;  ///< guarded by `mutex`, as what it is of
+    mutable sandboxed::Exercise exercise;
     std::int64_t waiting = 0;
     std::string trouble;
     std::condition_variable news;

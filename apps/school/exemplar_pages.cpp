@@ -59,14 +59,13 @@ std::optional<std::pair<Assigned, school::PushedAttempt>> toShow(const Visit& v,
 }
 
 Page exemplarPage(const Visit& v, const Assigned& of, const school::PushedAttempt& attempt, const Fields& typed,
-                  const std::map<std::string, std::string>& wrong, bool isSet, const TaskOf& taskOf,
-                  PictureShelf& pictures) {
+                  const std::map<std::string, std::string>& wrong, bool isSet, Readings& readings) {
     HtmlReport page =
         report::sitePage(words()("school-teaching.exemplar-work", attempt.attempt.id.substr(0, 6)), lookerOf(v));
     page.link("/assignments/" + of.assignment.id + "/exemplars", words()("school-teaching.exemplars"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
     page.paragraph(words()("school-teaching.exemplar-about"), Tone::note);
-    addPicture(page, v, attempt, of.assignment.pack, taskOf, pictures);
+    addPicture(page, v, attempt, of.assignment.pack, readings);
     page.heading(words()("school-teaching.consensus"));
     report::Form form{"/attempts/" + attempt.attempt.id + "/exemplar", {report::tokenField(lookerOf(v))}, {}};
     for (report::FormField& field : sheetFields(of.rubric, typed, wrong))
@@ -100,11 +99,11 @@ std::optional<school::Calibration> ownOf(const Visit& v, const std::string& assi
 }
 
 Page calibrationPage(const Visit& v, const Calibrated& of, std::size_t number, const Fields& typed,
-                     const std::map<std::string, std::string>& wrong, const TaskOf& taskOf, PictureShelf& pictures) {
+                     const std::map<std::string, std::string>& wrong, Readings& readings) {
     HtmlReport page = report::sitePage(words()("school-teaching.exemplar-number", number), lookerOf(v));
     page.link("/assignments/" + of.of.assignment.id + "/exemplars", words()("school-teaching.exemplars"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
-    addPicture(page, v, of.attempt, of.of.assignment.pack, taskOf, pictures);
+    addPicture(page, v, of.attempt, of.of.assignment.pack, readings);
     if (const auto own = ownOf(v, of.of.assignment.id, of.exemplar.attempt)) {
         page.heading(words()("school-teaching.you-and-consensus"));
         addComparison(page, of.of.rubric, readSheet(of.of.rubric, parseSheet(own->content)),
@@ -223,18 +222,17 @@ Page exemplarsOf(const Visit& v, const std::string& assignment, const Told& told
     return {told.isWrong ? 422 : 200, page.text()};
 }
 
-Page exemplarOf(const Visit& v, const std::string& id, const TaskOf& taskOf, PictureShelf& pictures) {
+Page exemplarOf(const Visit& v, const std::string& id, Readings& readings) {
     const auto of = toShow(v, id);
     if (!of) return notYours();
     noteLook(v, "exemplar seen", id);
     for (const school::Exemplar& one : Teaching(v.books).exemplars(of->first.assignment.id))
         if (one.attempt == id)
-            return exemplarPage(v, of->first, of->second, parseSheet(one.content), {}, true, taskOf, pictures);
-    return exemplarPage(v, of->first, of->second, {}, {}, false, taskOf, pictures);
+            return exemplarPage(v, of->first, of->second, parseSheet(one.content), {}, true, readings);
+    return exemplarPage(v, of->first, of->second, {}, {}, false, readings);
 }
 
-Page setExemplar(const Visit& v, const std::string& id, const Fields& fields, const TaskOf& taskOf,
-                 PictureShelf& pictures) {
+Page setExemplar(const Visit& v, const std::string& id, const Fields& fields, Readings& readings) {
     const auto of = toShow(v, id);
     if (!of) return notYours();
     Teaching teaching(v.books);
@@ -248,26 +246,24 @@ Page setExemplar(const Visit& v, const std::string& id, const Fields& fields, co
         return {303, {}, "/assignments/" + assignment + "/exemplars"};
     }
     const Sheet sheet = readSheet(of->first.rubric, fields);
-    if (!sheet.wrong.empty())
-        return exemplarPage(v, of->first, of->second, fields, sheet.wrong, isSet, taskOf, pictures);
+    if (!sheet.wrong.empty()) return exemplarPage(v, of->first, of->second, fields, sheet.wrong, isSet, readings);
     teaching.set(school::Exemplar{id, assignment, sheetJson(fields), v.person.code}, act);
     return {303, {}, "/assignments/" + assignment + "/exemplars"};
 }
 
-Page calibrationOf(const Visit& v, const std::string& assignment, std::size_t number, const TaskOf& taskOf,
-                   PictureShelf& pictures) {
+Page calibrationOf(const Visit& v, const std::string& assignment, std::size_t number, Readings& readings) {
     const auto of = toCalibrate(v, assignment, number);
     if (!of) return notYours();
     noteLook(v, "exemplar seen", of->exemplar.attempt);
-    return calibrationPage(v, *of, number, {}, {}, taskOf, pictures);
+    return calibrationPage(v, *of, number, {}, {}, readings);
 }
 
 Page calibrate(const Visit& v, const std::string& assignment, std::size_t number, const Fields& fields,
-               const TaskOf& taskOf, PictureShelf& pictures) {
+               Readings& readings) {
     const auto of = toCalibrate(v, assignment, number);
     if (!of) return notYours();
     const Sheet sheet = readSheet(of->of.rubric, fields);
-    if (!sheet.wrong.empty()) return calibrationPage(v, *of, number, fields, sheet.wrong, taskOf, pictures);
+    if (!sheet.wrong.empty()) return calibrationPage(v, *of, number, fields, sheet.wrong, readings);
     // The first counts: who knows the consensus does not mark anew.
     (void)Teaching(v.books).add(school::Calibration{of->exemplar.attempt, v.person.code, sheetJson(fields)},
                                 {v.person.code, v.now});

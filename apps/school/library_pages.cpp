@@ -184,31 +184,28 @@ Page addExercise(const Visit& v, const std::string& file) {
     }
 }
 
-Page exerciseOf(const Visit& v, const std::string& hash, const TaskOf& taskOf) {
+Page exerciseOf(const Visit& v, const std::string& hash, Readings& readings) {
     if (!may(v, Action::setExercise, {})) return notYours();
     const auto pack = v.books.pack(hash);
-    const auto task = pack ? taskOf(v.books, hash) : nullptr;
-    if (!task) return notYours();
-    const auto localOf = [](const cases::Texts& texts) {
-        if (const auto own = texts.find(words().language()); own != texts.end()) return own->second;
-        return texts.empty() ? std::string() : texts.begin()->second;
-    };
+    if (!pack) return notYours();
+    const sandboxed::Exercise task = readings.exercise(v.books, hash);
     HtmlReport page = report::sitePage(
-        task->toothCase.exercise ? localOf(task->toothCase.exercise->title) : pack->title, lookerOf(v));
+        task.title.empty() ? pack->title : std::string(cases::inLanguage(task.title, words().language())), lookerOf(v));
     page.link("/exercises", words()("school-teaching.exercises"));
-    if (task->toothCase.exercise) page.paragraph(localOf(task->toothCase.exercise->instructions));
+    if (!task.instructions.empty())
+        page.paragraph(std::string(cases::inLanguage(task.instructions, words().language())));
     page.facts({}, {{words()("school.exercise"),
-                     fmt::format("{}, {} {}", task->id, words()("school-teaching.version"), task->version)},
-                    {words()("school-teaching.tooth"), task->toothCase.name},
-                    {words()("school-teaching.level"), task->level},
-                    {words()("school-teaching.minutes"), task->minutes ? fmt::format("{:g}", *task->minutes) : ""},
-                    {words()("school-teaching.voxel"), fmt::format("{:g} mm", task->voxelMm)},
+                     fmt::format("{}, {} {}", task.id, words()("school-teaching.version"), task.version)},
+                    {words()("school-teaching.tooth"), task.tooth},
+                    {words()("school-teaching.level"), task.level},
+                    {words()("school-teaching.minutes"), task.minutes ? fmt::format("{:g}", *task.minutes) : ""},
+                    {words()("school-teaching.voxel"), fmt::format("{:g} mm", task.voxelMm)},
                     {words()("school-teaching.preparation"),
-                     words()(task->preparation ? "school-teaching.yes" : "school-teaching.no")},
+                     words()(task.hasPreparation ? "school-teaching.yes" : "school-teaching.no")},
                     {words()("school-teaching.hash"), hash}});
     page.link("/rubrics/" + pack->rubric, words()("school-teaching.its-rubric"));
     page.heading(words()("school-teaching.in-words"));
-    page.code(rubric::describe(rubric::parseRubric(task->rubric, "rubric.toml"), words().language()));
+    page.code(rubric::describe(rubric::parseRubric(task.rubric, "rubric.toml"), words().language()));
     page.heading(words()("school-teaching.given-to"));
     bool isAny = false;
     for (const school::SchoolClass& one : v.books.classes()) {

@@ -80,7 +80,7 @@ std::optional<Found> find(const Visit& v, const std::string& assignment, const s
 
 Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fields& typed,
                const std::map<std::string, std::string>& wrong, bool isIn, const std::string& told,
-               const TaskOf& taskOf, PictureShelf& pictures) {
+               Readings& readings) {
     const std::string& code = found.items[found.place].code;
     HtmlReport page = report::sitePage(words()("school-teaching.work", code), lookerOf(v));
     page.link(at(of.assignment.id, "/marking"), words()("school-teaching.back-to-desk", of.assignment.title));
@@ -88,7 +88,7 @@ Page sheetPage(const Visit& v, const Assigned& of, const Found& found, const Fie
     if (!told.empty()) page.paragraph(told, Tone::good);
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
     page.begin(HtmlReport::Group::beside);
-    addPicture(page, v, found.attempt, of.assignment.pack, taskOf, pictures);
+    addPicture(page, v, found.attempt, of.assignment.pack, readings);
     page.begin(HtmlReport::Group::part);
     page.heading(words()("school-teaching.your-marks"));
     if (isIn) {
@@ -137,7 +137,7 @@ std::string said(const rubric::Rubric& rubric, const marking::ReturnedMarks& mar
 }
 
 Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAttempt& attempt, const Fields& typed,
-                      const std::map<std::string, std::string>& wrong, const TaskOf& taskOf, PictureShelf& pictures) {
+                      const std::map<std::string, std::string>& wrong, Readings& readings) {
     const Teaching teaching(v.books);
     const Settled settled = settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(of.assignment.id));
     HtmlReport page =
@@ -147,7 +147,7 @@ Page adjudicationPage(const Visit& v, const Assigned& of, const school::PushedAt
     page.link("/attempts/" + attempt.attempt.id + "/review", words()("school-live.review"));
     if (!wrong.empty()) page.paragraph(words()("school-teaching.wrong", wrong.size()), Tone::bad);
     page.begin(HtmlReport::Group::beside);
-    addPicture(page, v, attempt, of.assignment.pack, taskOf, pictures);
+    addPicture(page, v, attempt, of.assignment.pack, readings);
     page.begin(HtmlReport::Group::part);
     page.heading(words()("school-teaching.markers-said"));
     std::vector<school::Mark> all = settled.markers;
@@ -224,10 +224,9 @@ std::optional<Assigned> assignedFor(const Visit& v, const std::string& id, Actio
 }
 
 void addPicture(HtmlReport& page, const Visit& v, const school::PushedAttempt& attempt, const std::string& exercise,
-                const TaskOf& taskOf, PictureShelf& pictures) {
-    const auto task = taskOf(v.books, exercise);
-    if (!task) return page.paragraph(words()("school.not-there"), Tone::missing);
-    const PictureShelf::Drawn drawn = pictures.of(v.books, attempt, *task);
+                Readings& readings) {
+    if (!v.books.pack(exercise)) return page.paragraph(words()("school.not-there"), Tone::missing);
+    const Readings::Picture drawn = readings.picture(v.books, attempt, exercise);
     if (drawn.png.empty())
         page.paragraph(words()("report.no-pictures", drawn.missing), Tone::missing);
     else
@@ -382,19 +381,18 @@ Page takeWorks(const Visit& v, const std::string& assignment) {
     return {303, {}, at(assignment, "/marking")};
 }
 
-Page workOf(const Visit& v, const std::string& assignment, const std::string& code, const TaskOf& taskOf,
-            PictureShelf& pictures) {
+Page workOf(const Visit& v, const std::string& assignment, const std::string& code, Readings& readings) {
     const auto of = assignedFor(v, assignment, Action::markBlind);
     const auto found = of ? find(v, assignment, code) : std::nullopt;
     if (!found) return notYours();
     noteLook(v, "work seen blind", found->attempt.attempt.id, assignment);
     const auto sheet = Teaching(v.books).sheet(assignment, v.person.code, code);
     return sheetPage(v, *of, *found, sheet ? parseSheet(sheet->content) : Fields{}, {}, sheet && sheet->isIn, {},
-                     taskOf, pictures);
+                     readings);
 }
 
 Page markWork(const Visit& v, const std::string& assignment, const std::string& code, const Fields& fields,
-              const TaskOf& taskOf, PictureShelf& pictures) {
+              Readings& readings) {
     const auto of = assignedFor(v, assignment, Action::markBlind);
     const auto found = of ? find(v, assignment, code) : std::nullopt;
     if (!found) return notYours();
@@ -403,14 +401,14 @@ Page markWork(const Visit& v, const std::string& assignment, const std::string& 
     if (fieldOf(fields, "do") != "give") {
         if (!teaching.save(sheet, {}, actOf(v)))
             return sheetPage(v, *of, *found, parseSheet(teaching.sheet(assignment, v.person.code, code)->content), {},
-                             true, {}, taskOf, pictures);
-        return sheetPage(v, *of, *found, fields, {}, false, words()("school-teaching.kept"), taskOf, pictures);
+                             true, {}, readings);
+        return sheetPage(v, *of, *found, fields, {}, false, words()("school-teaching.kept"), readings);
     }
     const Sheet read = readSheet(of->rubric, fields);
     if (!read.wrong.empty()) {
         // What is typed so far is not lost whatever becomes of this page.
         (void)teaching.save(sheet, {}, actOf(v));
-        return sheetPage(v, *of, *found, fields, read.wrong, false, {}, taskOf, pictures);
+        return sheetPage(v, *of, *found, fields, read.wrong, false, {}, readings);
     }
     sheet.isIn = true;
     std::optional<school::Mark> mark;
@@ -550,19 +548,18 @@ Page changeMarks(const Visit& v, const std::string& assignment, const Fields& fi
                             attempts.size())});
 }
 
-Page adjudicationOf(const Visit& v, const std::string& id, const TaskOf& taskOf, PictureShelf& pictures) {
+Page adjudicationOf(const Visit& v, const std::string& id, Readings& readings) {
     const auto of = toAdjudicate(v, id);
     if (!of) return notYours();
     noteLook(v, "marks seen", id);
-    return adjudicationPage(v, of->first, of->second, {}, {}, taskOf, pictures);
+    return adjudicationPage(v, of->first, of->second, {}, {}, readings);
 }
 
-Page adjudicate(const Visit& v, const std::string& id, const Fields& fields, const TaskOf& taskOf,
-                PictureShelf& pictures) {
+Page adjudicate(const Visit& v, const std::string& id, const Fields& fields, Readings& readings) {
     const auto of = toAdjudicate(v, id);
     if (!of) return notYours();
     const Sheet read = readSheet(of->first.rubric, fields);
-    if (!read.wrong.empty()) return adjudicationPage(v, of->first, of->second, fields, read.wrong, taskOf, pictures);
+    if (!read.wrong.empty()) return adjudicationPage(v, of->first, of->second, fields, read.wrong, readings);
     (void)v.books.push(markOf(read, of->first.rubric, of->first.rubricHash, of->second, countingScore(v.books, id),
                               school::newId(), v.person.code, "adjudication", v.now),
                        actOf(v));

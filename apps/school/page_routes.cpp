@@ -69,9 +69,7 @@ std::vector<Entry> pageRoutes(Service* of) {
         {"GET", "/attempts/([0-9a-f]{32})",
          Shown([](const Request& request, const Visit& visit) { return attemptOf(visit, request.matches[1]); })},
         {"GET", "/attempts/([0-9a-f]{32})/result", Shown([of](const Request& request, const Visit& visit) {
-             return resultOf(visit, request.matches[1], [of](const school::Books& books, const std::string& hash) {
-                 return of->tasks.of(books, hash);
-             });
+             return resultOf(visit, request.matches[1], of->readings);
          })},
     };
 }

@@ -4,12 +4,12 @@
 #include <algorithm>
 
 #include "handpiece/app/assessment/assessment_json.h"
-#include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/review_page.h"
 #include "handpiece/app/report/school_pages.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/file.h"
 #include "school/exam_pages.h"
+#include "school/readings.h"
 #include "school/review_shelf.h"
 #include "school/teaching.h"
 #include "school/visit.h"
@@ -93,7 +93,7 @@ Page attemptOf(const Visit& v, const std::string& id) {
                                      v.books.scoresOf(id), marks, comments)};
 }
 
-Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {
+Page resultOf(const Visit& v, const std::string& id, Readings& readings) {
     const auto attempt = v.books.attempt(id);
     const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
     if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
@@ -103,10 +103,10 @@ Page resultOf(const Visit& v, const std::string& id, const TaskOf& taskOf) {
     const school::Score& s = scores.back();
     const score::Result result = assessment::parseResult(s.result, "the books");
     const auto text = v.books.rubric(s.rubric);
-    const auto task = taskOf(v.books, result.identity.exerciseHash);
-    if (!text || !task) return refused(words()("school.not-there"), 404);
+    const std::string& exercise = result.identity.exerciseHash;
+    if (!text || !v.books.pack(exercise)) return refused(words()("school.not-there"), 404);
     if (!relation.isOwn) noteLook(v, "result seen", attempt->person, id);
-    return {200, report::studentReport(result, *task, rubric::parseRubric(text->text, "rubric " + text->id))};
+    return {200, readings.studentReport(v.books, exercise, s.result, text->text)};
 }
 
 Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {

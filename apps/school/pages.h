@@ -9,12 +9,12 @@
 #include <string>
 #include <string_view>
 
-#include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/store/books.h"
 
 namespace handpiece::school_server {
 
+class Readings;
 class ReviewShelf;
 
 /// What goes back to the browser.
@@ -30,9 +30,6 @@ struct Page {
     bool isReview = false;      ///< the viewer that stands in it runs, and asks nobody
 };
 
-/// Reads an exercise of the books by its hash; null where there is none.
-using TaskOf = std::function<std::shared_ptr<const tasks::Task>(const school::Books&, const std::string&)>;
-
 /// One request of somebody who is logged in.
 struct Visit {
     school::Books& books;
@@ -45,7 +42,7 @@ struct Visit {
 [[nodiscard]] Page classOf(const Visit& visit, const std::string& id);
 [[nodiscard]] Page personOf(const Visit& visit, const std::string& code);
 [[nodiscard]] Page attemptOf(const Visit& visit, const std::string& id);
-[[nodiscard]] Page resultOf(const Visit& visit, const std::string& id, const TaskOf& taskOf);
+[[nodiscard]] Page resultOf(const Visit& visit, const std::string& id, Readings& readings);
 /// The review, or how far the making of it is.
 [[nodiscard]] Page reviewOf(const Visit& visit, const std::string& id, ReviewShelf& shelf);
 [[nodiscard]] Page refused(const std::string& what, int status);

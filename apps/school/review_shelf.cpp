@@ -10,17 +10,25 @@
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/report/review_page.h"
 #include "handpiece/app/report/school_pages.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/sandbox/sandbox.h"
+#include "school/exercise_file.h"
 
 namespace handpiece::school_server {
 
 namespace fs = std::filesystem;
 
-ReviewShelf::ReviewShelf(fs::path folder, BooksPool& books, TaskShelf& tasks, std::uintmax_t mostBytes)
-    : folder_(std::move(folder)), books_(books), tasks_(tasks), mostBytes_(mostBytes) {}
+namespace {
+/// Beside the page that a recording is at fault for not being: a look at a page does not try it again.
+constexpr const char* kWhy = ".why";
+}  // namespace
+
+ReviewShelf::ReviewShelf(fs::path folder, BooksPool& books, std::uintmax_t mostBytes)
+    : folder_(std::move(folder)), books_(books), mostBytes_(mostBytes) {}
 
 ReviewShelf::~ReviewShelf() {
     {
@@ -43,6 +51,10 @@ ReviewShelf::Answer ReviewShelf::ask(const school::PushedAttempt& attempt, const
         const std::vector<std::byte> bytes = core::readFile(path);
         fs::last_write_time(path, fs::file_time_type::clock::now(), ec);  // asked for last
         return {std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())};
+    }
+    if (const fs::path why = path.string() + kWhy; fs::is_regular_file(why, ec)) {
+        const std::vector<std::byte> bytes = core::readFile(why);
+        return {{}, 0.0, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size())};
     }
     const std::lock_guard lock(mutex_);
     if (const auto trouble = troubles_.extract(attempt.attempt.id)) return {{}, 0.0, trouble.mapped()};
@@ -77,6 +89,7 @@ void ReviewShelf::loop() {
             sweep(work.file);
         } catch (const core::Error& e) {
             trouble = e.problem();  // where it lies here is nobody's business
+            keepTrouble(work.file, e);
         } catch (const std::exception& e) {
             std::fprintf(stderr, "handpiece-school: review of %s: %s\n", work.attempt.c_str(), core::asError(e).what());
             trouble = "something went wrong there";
@@ -88,29 +101,39 @@ void ReviewShelf::loop() {
     }
 }
 
+void ReviewShelf::keepTrouble(const fs::path& page, const core::Error& e) {
+    if (!e.id().starts_with("sandbox-") || !sandbox::isFault(e)) return;
+    try {
+        fs::create_directories(folder_);
+        core::writeFile(page.string() + kWhy, e.problem(), {.ownerOnly = true});
+    } catch (const std::exception& full) {
+        std::fprintf(stderr, "handpiece-school: %s\n", core::asError(full).what());
+    }
+}
+
 std::string ReviewShelf::made(const std::string& id, const core::Progress& progress) {
-    const BooksPool::Lent books = books_.take();
-    const auto attempt = books->attempt(id);
-    if (!attempt || attempt->files.empty())
-        throw core::Error("it came without a session", "", "push it from its station");
-    std::vector<report::Reviewed> chain;
-    for (std::size_t i = 0; i < attempt->files.size(); ++i)
-        chain.push_back({books->files().path(attempt->files[i]), fmt::format("session {}", i + 1), {}});
-    // Against what its score was made; where there is none the work is shown alone.
-    report::ReviewedAgainst against;
-    std::shared_ptr<const tasks::Task> task;
-    std::optional<score::Result> result;
-    std::optional<rubric::Rubric> rubric;
-    const std::vector<school::Score> scores = books->scoresOf(id);
-    if (!scores.empty() && !scores.back().result.empty()) {
-        result = assessment::parseResult(scores.back().result, "the books");
-        task = tasks_.of(*books, result->identity.exerciseHash);
-        if (const auto text = books->rubric(scores.back().rubric); text && task) {
-            rubric = rubric::parseRubric(text->text, "rubric " + text->id);
-            against = {task.get(), &*result, &*rubric};
+    report::ReviewedAttempt of;
+    sandboxed::Files files;
+    std::optional<ExerciseFile> exercise;
+    std::string result, rubric;
+    {
+        const BooksPool::Lent books = books_.take();
+        const auto attempt = books->attempt(id);
+        if (!attempt || attempt->files.empty())
+            throw core::Error("it came without a session", "", "push it from its station");
+        of = {id, attempt->attempt.exercise, attempt->attempt.finished};
+        for (const std::string& file : attempt->files)
+            files.sessions.push_back(books->files().path(file));
+        // Against what its score was made; where there is none the work is shown alone.
+        if (const auto scores = books->scoresOf(id); !scores.empty() && !scores.back().result.empty()) {
+            result = scores.back().result;
+            exercise.emplace(*books, assessment::parseResult(result, "the books").identity.exerciseHash);
+            files.exercise = exercise->path();
+            if (const auto text = books->rubric(scores.back().rubric)) rubric = text->text;
         }
     }
-    return report::reviewPage(chain, {id, attempt->attempt.exercise, attempt->attempt.finished}, against, progress);
+    return report::reviewPage(
+        sandboxed::review(files, of.exercise, result, rubric, report::roomForReview(of), progress), of);
 }
 
 void ReviewShelf::removeGone(const school::Books& books) {

@@ -14,9 +14,9 @@
 #include <string>
 #include <thread>
 
+#include "handpiece/base/core/progress.h"
 #include "handpiece/school/store/books.h"
 #include "school/books_pool.h"
-#include "school/task_shelf.h"
 
 namespace handpiece::school_server {
 
@@ -24,8 +24,7 @@ namespace handpiece::school_server {
 class ReviewShelf {
   public:
     /// Pages lie in `folder`, `mostBytes` at most: those that nobody asked for longest go.
-    ReviewShelf(std::filesystem::path folder, BooksPool& books, TaskShelf& tasks,
-                std::uintmax_t mostBytes = 2'000'000'000);
+    ReviewShelf(std::filesystem::path folder, BooksPool& books, std::uintmax_t mostBytes = 2'000'000'000);
     ~ReviewShelf();
     ReviewShelf(const ReviewShelf&) = delete;
     ReviewShelf& operator=(const ReviewShelf&) = delete;
@@ -33,8 +32,9 @@ class ReviewShelf {
     struct Answer {
         std::string page{};     ///< empty: it is not there yet
         double progress = 0.0;  ///< of making it, 0 to 1
-        std::string trouble{};  ///< why it cannot be made; told once, and tried again when it is asked for again
-        bool isBusy = false;    ///< too many wait: nothing was begun
+        std::string
+            trouble{};  ///< why it cannot be made; where it is not the recording's fault, tried again when asked again
+        bool isBusy = false;  ///< too many wait: nothing was begun
     };
     /// The page, or how far it is. `attempt` has all its files.
     [[nodiscard]] Answer ask(const school::PushedAttempt& attempt, const std::vector<school::Score>& scores);
@@ -45,12 +45,12 @@ class ReviewShelf {
   private:
     void loop();
     [[nodiscard]] std::string made(const std::string& attempt, const core::Progress& progress);
+    void keepTrouble(const std::filesystem::path& page, const core::Error& error);
     void sweep(const std::filesystem::path& keep);
 
     static constexpr std::size_t kMostWaiting = 20;
     const std::filesystem::path folder_;
     BooksPool& books_;
-    TaskShelf& tasks_;
     const std::uintmax_t mostBytes_;
     struct Work {
         std::string attempt, language;

@@ -11,10 +11,9 @@
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
 #include "school/live_board.h"
-#include "school/picture_shelf.h"
+#include "school/readings.h"
 #include "school/review_shelf.h"
 #include "school/server.h"
-#include "school/task_shelf.h"
 
 namespace handpiece::school_server {
 
@@ -23,7 +22,7 @@ struct Service {
         : settings(s),
           clock(std::move(c)),
           books({s.data, s.database, s.connections}),
-          reviews(s.data / "reviews", books, tasks) {}
+          reviews(s.data / "reviews", books) {}
 
     [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
     /// Before a guess at a login's secret, which counts at once: a hundred at a time are a hundred. How long it has to
@@ -45,10 +44,9 @@ struct Service {
     const Settings settings;
     const Clock clock;
     BooksPool books;
-    TaskShelf tasks;
     LiveBoard live;
     ReviewShelf reviews;
-    PictureShelf pictures;
+    Readings readings;
     std::mutex guessing;
     school::Throttle throttle;  ///< guarded by `guessing`
     std::atomic<std::uint64_t> asked{0}, failed{0}, attempts{0}, bytes{0};

@@ -11,7 +11,7 @@
 #include "handpiece/app/report/report_html.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "school/pages.h"
-#include "school/picture_shelf.h"
+#include "school/readings.h"
 #include "school/sheet.h"
 #include "school/visit.h"
 
@@ -36,7 +36,7 @@ struct ReleasedMarks {
 [[nodiscard]] ReleasedMarks releasedMarks(const Visit& visit, const school::PushedAttempt& attempt);
 /// The tooth as the attempt leaves it, or why it is not shown.
 void addPicture(report::HtmlReport& page, const Visit& visit, const school::PushedAttempt& attempt,
-                const std::string& exercise, const TaskOf& taskOf, PictureShelf& pictures);
+                const std::string& exercise, Readings& readings);
 /// To be shown at the top of a page that something was done, or what is wrong.
 struct Told {
     std::string text{};
@@ -51,18 +51,16 @@ struct Told {
 [[nodiscard]] Page deskOf(const Visit& visit, const std::string& assignment);
 [[nodiscard]] Page takeWorks(const Visit& visit, const std::string& assignment);
 [[nodiscard]] Page workOf(const Visit& visit, const std::string& assignment, const std::string& code,
-                          const TaskOf& taskOf, PictureShelf& pictures);
+                          Readings& readings);
 /// Half or whole: field "do" is "keep" or "give".
 [[nodiscard]] Page markWork(const Visit& visit, const std::string& assignment, const std::string& code,
-                            const Fields& fields, const TaskOf& taskOf, PictureShelf& pictures);
+                            const Fields& fields, Readings& readings);
 /// What all markers said, what is to be adjudicated, what students see.
 [[nodiscard]] Page marksOf(const Visit& visit, const std::string& assignment, const Told& told = {});
 /// Field "do": "difference", "release", "take-back"; or "release-one", "take-back-one": an attempt.
 [[nodiscard]] Page changeMarks(const Visit& visit, const std::string& assignment, const Fields& fields);
-[[nodiscard]] Page adjudicationOf(const Visit& visit, const std::string& attempt, const TaskOf& taskOf,
-                                  PictureShelf& pictures);
-[[nodiscard]] Page adjudicate(const Visit& visit, const std::string& attempt, const Fields& fields,
-                              const TaskOf& taskOf, PictureShelf& pictures);
+[[nodiscard]] Page adjudicationOf(const Visit& visit, const std::string& attempt, Readings& readings);
+[[nodiscard]] Page adjudicate(const Visit& visit, const std::string& attempt, const Fields& fields, Readings& readings);
 [[nodiscard]] Page agreementOf(const Visit& visit, const std::string& assignment);
 
 // Standards.
@@ -76,15 +74,14 @@ struct Told {
 
 // Exemplars.
 [[nodiscard]] Page exemplarsOf(const Visit& visit, const std::string& assignment, const Told& told = {});
-[[nodiscard]] Page exemplarOf(const Visit& visit, const std::string& attempt, const TaskOf& taskOf,
-                              PictureShelf& pictures);
+[[nodiscard]] Page exemplarOf(const Visit& visit, const std::string& attempt, Readings& readings);
 /// Field "do": "set", "remove".
 [[nodiscard]] Page setExemplar(const Visit& visit, const std::string& attempt, const Fields& fields,
-                               const TaskOf& taskOf, PictureShelf& pictures);
+                               Readings& readings);
 [[nodiscard]] Page calibrationOf(const Visit& visit, const std::string& assignment, std::size_t number,
-                                 const TaskOf& taskOf, PictureShelf& pictures);
+                                 Readings& readings);
 [[nodiscard]] Page calibrate(const Visit& visit, const std::string& assignment, std::size_t number,
-                             const Fields& fields, const TaskOf& taskOf, PictureShelf& pictures);
+                             const Fields& fields, Readings& readings);
 /// Exemplars that this marker has to mark before they begin.
 [[nodiscard]] std::size_t exemplarsOpen(const Visit& visit, const std::string& assignment);
 
@@ -119,7 +116,7 @@ struct Told {
 [[nodiscard]] Page exercisesOf(const Visit& visit, const Told& told = {});
 /// `file`: the bytes of a .handpiece file.
 [[nodiscard]] Page addExercise(const Visit& visit, const std::string& file);
-[[nodiscard]] Page exerciseOf(const Visit& visit, const std::string& hash, const TaskOf& taskOf);
+[[nodiscard]] Page exerciseOf(const Visit& visit, const std::string& hash, Readings& readings);
 /// All that there is of one assignment, for whom.
 [[nodiscard]] Page assignmentOf(const Visit& visit, const std::string& assignment, const Told& told = {});
 [[nodiscard]] Page setTimes(const Visit& visit, const std::string& assignment, const Fields& fields);

@@ -17,9 +17,6 @@ constexpr std::size_t kAroundFiles = 64u << 10;
 
 std::vector<Entry> teachingRoutes(Service* of) {
     using httplib::Request;
-    const TaskOf taskOf = [of](const school::Books& books, const std::string& hash) {
-        return of->tasks.of(books, hash);
-    };
     return {
         {"GET", "/marking", Shown([](const Request&, const Visit& visit) { return markingOf(visit); })},
         {"GET", "/classes/([0-9A-Za-z._-]{1,64})/marking",
@@ -29,25 +26,23 @@ std::vector<Entry> teachingRoutes(Service* of) {
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/marking",
          Shown([](const Request& request, const Visit& visit) { return takeWorks(visit, request.matches[1]); })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/marking/([0-9a-z]{4})",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return workOf(visit, request.matches[1], request.matches[2], taskOf, of->pictures);
+         Shown([of](const Request& request, const Visit& visit) {
+             return workOf(visit, request.matches[1], request.matches[2], of->readings);
          })},
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/marking/([0-9a-z]{4})",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return markWork(visit, request.matches[1], request.matches[2], request.params, taskOf, of->pictures);
+         Shown([of](const Request& request, const Visit& visit) {
+             return markWork(visit, request.matches[1], request.matches[2], request.params, of->readings);
          })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/marks",
          Shown([](const Request& request, const Visit& visit) { return marksOf(visit, request.matches[1]); })},
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/marks", Shown([](const Request& request, const Visit& visit) {
              return changeMarks(visit, request.matches[1], request.params);
          })},
-        {"GET", "/attempts/([0-9a-f]{32})/adjudication",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return adjudicationOf(visit, request.matches[1], taskOf, of->pictures);
+        {"GET", "/attempts/([0-9a-f]{32})/adjudication", Shown([of](const Request& request, const Visit& visit) {
+             return adjudicationOf(visit, request.matches[1], of->readings);
          })},
-        {"POST", "/attempts/([0-9a-f]{32})/adjudication",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return adjudicate(visit, request.matches[1], request.params, taskOf, of->pictures);
+        {"POST", "/attempts/([0-9a-f]{32})/adjudication", Shown([of](const Request& request, const Visit& visit) {
+             return adjudicate(visit, request.matches[1], request.params, of->readings);
          })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/agreement",
          Shown([](const Request& request, const Visit& visit) { return agreementOf(visit, request.matches[1]); })},
@@ -93,26 +88,25 @@ std::vector<Entry> teachingRoutes(Service* of) {
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars",
          Shown([](const Request& request, const Visit& visit) { return exemplarsOf(visit, request.matches[1]); })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars/([0-9]{1,3})",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return calibrationOf(visit, request.matches[1], std::stoul(request.matches[2]), taskOf, of->pictures);
+         Shown([of](const Request& request, const Visit& visit) {
+             return calibrationOf(visit, request.matches[1], std::stoul(request.matches[2]), of->readings);
          })},
         {"POST", "/assignments/([0-9A-Za-z._-]{1,64})/exemplars/([0-9]{1,3})",
-         Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return calibrate(visit, request.matches[1], std::stoul(request.matches[2]), request.params, taskOf,
-                              of->pictures);
+         Shown([of](const Request& request, const Visit& visit) {
+             return calibrate(visit, request.matches[1], std::stoul(request.matches[2]), request.params, of->readings);
          })},
-        {"GET", "/attempts/([0-9a-f]{32})/exemplar", Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return exemplarOf(visit, request.matches[1], taskOf, of->pictures);
+        {"GET", "/attempts/([0-9a-f]{32})/exemplar", Shown([of](const Request& request, const Visit& visit) {
+             return exemplarOf(visit, request.matches[1], of->readings);
          })},
-        {"POST", "/attempts/([0-9a-f]{32})/exemplar", Shown([of, taskOf](const Request& request, const Visit& visit) {
-             return setExemplar(visit, request.matches[1], request.params, taskOf, of->pictures);
+        {"POST", "/attempts/([0-9a-f]{32})/exemplar", Shown([of](const Request& request, const Visit& visit) {
+             return setExemplar(visit, request.matches[1], request.params, of->readings);
          })},
         {"GET", "/exercises", Shown([](const Request&, const Visit& visit) { return exercisesOf(visit); })},
         {"POST", "/exercises",
          Shown([](const Request& request, const Visit& visit) { return addExercise(visit, sentBy(request, "file")); }),
          kMostExercise + kAroundFiles},
-        {"GET", "/exercises/([0-9a-f]{16})", Shown([taskOf](const Request& request, const Visit& visit) {
-             return exerciseOf(visit, request.matches[1], taskOf);
+        {"GET", "/exercises/([0-9a-f]{16})", Shown([of](const Request& request, const Visit& visit) {
+             return exerciseOf(visit, request.matches[1], of->readings);
          })},
         {"GET", "/assignments/([0-9A-Za-z._-]{1,64})",
          Shown([](const Request& request, const Visit& visit) { return assignmentOf(visit, request.matches[1]); })},

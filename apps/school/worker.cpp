@@ -5,14 +5,17 @@
 
 #include <cstdio>
 
-#include "handpiece/app/proving/exam_check.h"
-#include "handpiece/app/proving/proving.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "school/exam_arrival.h"
+#include "school/exercise_file.h"
 
 namespace handpiece::school_server {
+
+using school::ExamBooks;
+
 namespace {
 
 school::Score refused(const school::Job& job, std::string why) {
@@ -22,18 +25,6 @@ school::Score refused(const school::Job& job, std::string why) {
     score.state = "refused", score.passed = "teacher";
     score.reason = std::move(why);
     return score;
-}
-
-/// One byte more, and it is another file; not another work.
-void keepContents(school::Books& books, const school::PushedAttempt& attempt) {
-    for (const std::string& file : attempt.files)
-        try {
-            proving::RecordedInputs inputs(books.files().path(file));
-            inputs.goOn();
-            if (inputs.hasMoved()) books.keepContent(file, inputs.hash());
-        } catch (const core::Error&) {
-            // What cannot be read is refused when it is to be proven, with its reason.
-        }
 }
 
 }  // namespace
@@ -91,20 +82,16 @@ bool Worker::workOnce() {
 school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost) {
     const std::optional<school::PushedAttempt> attempt = books.attempt(job.attempt);
     if (!attempt) return refused(job, "the attempt is gone");
-    keepContents(books, *attempt);
-    if (const auto other = books.otherPersonWith(job.attempt))
-        return refused(job, "the same session came as another person's work, too");
-    std::string exercise = attempt->attempt.exerciseHash;
+    std::string pack = attempt->attempt.exerciseHash;
     if (!attempt->assignment.empty())
-        if (const auto assigned = books.assignment(attempt->assignment)) exercise = assigned->pack;
-    const std::shared_ptr<const tasks::Task> task = tasks_.of(books, exercise);
-    if (!task) return refused(job, fmt::format("the school has no exercise {}", exercise));
+        if (const auto assigned = books.assignment(attempt->assignment)) pack = assigned->pack;
+    const ExerciseFile exercise(books, pack);
+    if (exercise.path().empty()) return refused(job, fmt::format("the school has no exercise {}", pack));
     const std::optional<school::RubricVersion> text = books.rubric(job.rubric);
     if (!text) return refused(job, fmt::format("the school has no rubric {}", job.rubric));
-    const rubric::Rubric rubric = rubric::parseRubric(text->text, "rubric " + text->id);
-    std::vector<std::filesystem::path> sessions;
+    sandboxed::Files files{{}, exercise.path()};
     for (const std::string& file : attempt->files)
-        sessions.push_back(books.files().path(file));
+        files.sessions.push_back(books.files().path(file));
     school::Milliseconds renewed = clock_();
     const core::Progress progress = [&](double) {
         if (ends_) return false;
@@ -114,9 +101,15 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
         }
         return true;
     };
-    school::Score score = proving::prove(*attempt, sessions, *task, rubric, progress);
-    checkExam(books, *attempt, sessions, books.sharedTime(clock_()));
-    return score;
+    sandboxed::Proof proof = sandboxed::prove(*attempt, files, text->text, examNotes(books, *attempt), progress);
+    for (std::size_t i = 0; i < attempt->files.size(); ++i)
+        if (!proof.contents[i].empty()) books.keepContent(attempt->files[i], proof.contents[i]);
+    if (ExamBooks(books).sitting(attempt->attempt.id))
+        ExamBooks(books).setDoubts(attempt->attempt.id, proof.doubts, books.sharedTime(clock_()));
+    if (const auto other = books.otherPersonWith(job.attempt))
+        return refused(job, "the same session came as another person's work, too");
+    proof.score.rubric = job.rubric;
+    return std::move(proof.score);
 }
 
 }  // namespace handpiece::school_server

@@ -12,7 +12,6 @@
 #include <thread>
 
 #include "handpiece/school/store/books.h"
-#include "school/task_shelf.h"
 
 namespace handpiece::school_server {
 
@@ -44,7 +43,6 @@ class Worker {
     const WorkerSettings settings_;
     const std::function<school::Milliseconds()> clock_;
     const std::string name_;
-    TaskShelf tasks_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::atomic<bool> ends_{false};

@@ -14,14 +14,23 @@ namespace handpiece::report {
 using config::words;
 using Tone = HtmlReport::Tone;
 
-std::string reviewPage(std::span<const Reviewed> chain, const ReviewedAttempt& attempt, const ReviewedAgainst& against,
-                       const core::Progress& progress) {
+namespace {
+HtmlReport pageOf(const ReviewedAttempt& attempt) {
     HtmlReport page(attempt.exercise);
     page.link("/attempts/" + attempt.id, words()("school-live.to-attempt"));
     page.paragraph(words()("school-live.finished", momentOf(attempt.finished)), Tone::note);
     page.reviewHere();
-    page.review(
-        reviewOf(chain, attempt.exercise, against, true, std::min(page.roomForReview(), kMostReviewBytes), progress));
+    return page;
+}
+}  // namespace
+
+std::size_t roomForReview(const ReviewedAttempt& attempt) {
+    return std::min(pageOf(attempt).roomForReview(), kMostReviewBytes);
+}
+
+std::string reviewPage(const Review& review, const ReviewedAttempt& attempt) {
+    HtmlReport page = pageOf(attempt);
+    page.review(review);
     return page.text();
 }
 

@@ -3,7 +3,6 @@
 /// @file
 /// The review of an attempt in a server's pages.
 
-#include <span>
 #include <string>
 
 #include "handpiece/app/report/review.h"
@@ -16,9 +15,10 @@ struct ReviewedAttempt {
     std::string id, exercise;
     school::Milliseconds finished = 0;
 };
-/// A page that holds its review, the same for everybody: nobody's name is in it. Throws core::Error as reviewOf.
-[[nodiscard]] std::string reviewPage(std::span<const Reviewed> chain, const ReviewedAttempt& attempt,
-                                     const ReviewedAgainst& against, const core::Progress& progress = {});
+/// How many bytes its review may have.
+[[nodiscard]] std::size_t roomForReview(const ReviewedAttempt& attempt);
+/// A page that holds its review, the same for everybody: nobody's name is in it.
+[[nodiscard]] std::string reviewPage(const Review& review, const ReviewedAttempt& attempt);
 /// Until it is there: how far it is, loaded again by itself; or why there will be none.
 [[nodiscard]] std::string reviewWaitPage(const Looker& who, const std::string& attempt, double progress, bool isBusy,
                                          const std::string& trouble);

@@ -242,7 +242,8 @@ Task readTask(const fs::path& path) {
     return task;
 }
 
-void writeTask(const Task& task, const fs::path& path) {
+namespace {
+cases::PackageFiles filesOf(const Task& task) {
     if (!isId(task.id))
         throw core::Error(fmt::format("\"{}\" is no id", task.id), "the exercise",
                           "1 to 64 small letters, digits and '-'");
@@ -256,11 +257,21 @@ void writeTask(const Task& task, const fs::path& path) {
     if (!task.rubric.empty()) files[kRubricFile] = bytesOf(task.rubric);
     if (task.preparation && task.preparation->recorded)
         files[kZonesFile] = preparation::encodeZones(*task.preparation->recorded);
-    if (cases::isPackageName(path)) {
-        cases::setPackageType(files, cases::PackageType::exercise);
-        cases::writePackage(path, files);
-    } else
-        cases::writeFolder(path, files, kTaskFile);
+    return files;
+}
+}  // namespace
+
+std::vector<std::byte> packedTask(const Task& task) {
+    cases::PackageFiles files = filesOf(task);
+    cases::setPackageType(files, cases::PackageType::exercise);
+    return cases::packed(files);
+}
+
+void writeTask(const Task& task, const fs::path& path) {
+    if (cases::isPackageName(path))
+        core::writeFile(path, packedTask(task));
+    else
+        cases::writeFolder(path, filesOf(task), kTaskFile);
 }
 
 std::uint64_t contentHash(const Task& task) {

@@ -61,6 +61,8 @@ struct Task {
 [[nodiscard]] std::string taskToml(const Task& task);
 [[nodiscard]] Task parseTask(std::string_view toml, std::string rubric, cases::Case toothCase,
                              const std::string& where);
+/// The bytes of its .handpiece file. Throws core::Error.
+[[nodiscard]] std::vector<std::byte> packedTask(const Task& task);
 /// Into a folder, or as one .handpiece file; whole or not at all.
 void writeTask(const Task& task, const std::filesystem::path& path);
 

@@ -193,10 +193,8 @@ PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, co
 
 }  // namespace
 
-void writePackage(const fs::path& file, const PackageFiles& files) {
-    const auto failed = [&file](std::string why) {
-        return core::Error(fmt::format("cannot be packed: {}", why), file.string());
-    };
+std::vector<std::byte> packed(const PackageFiles& files) {
+    const auto failed = [](std::string why) { return core::Error(fmt::format("cannot be packed: {}", why)); };
     zip_error_t error;
     zip_error_init(&error);
     const Source source(zip_source_buffer_create(nullptr, 0, 0, &error));

@@ -40,8 +40,10 @@ struct PackageLimits {
 [[nodiscard]] PackageFiles readPackage(std::span<const std::byte> zip, const std::string& where,
                                        const PackageLimits& limits = {});
 
-/// Written beside its place and renamed into it. The same files give the same bytes. Recordings (.h5) are packed in
-/// themselves and stored as they are.
+/// As one zip. The same files give the same bytes. Recordings (.h5) are packed in themselves and stored as they are.
+/// Throws core::Error.
+[[nodiscard]] std::vector<std::byte> packed(const PackageFiles& files);
+/// packed(), written beside its place and renamed into it.
 void writePackage(const std::filesystem::path& file, const PackageFiles& files);
 
 /// case.toml and all that it names, as writeCase() writes them.

@@ -93,15 +93,22 @@ class Rows {
                        name, "is stored in another way");
         source.require(chunk[0] > 0 && chunk[1] == width && chunk[0] <= kMaxChunkBytes / (width * H5Tget_size(type)),
                        name, "has chunks of another size");
+        int deflated = 0;
         for (int i = 0; i < H5Pget_nfilters(creation.id()); ++i) {
             unsigned flags = 0, values[8];
             std::size_t count = 8;
             const H5Z_filter_t filter =
                 H5Pget_filter2(creation.id(), static_cast<unsigned>(i), &flags, &count, values, 0, nullptr, nullptr);
-            source.require(filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_DEFLATE, name,
+            deflated += filter == H5Z_FILTER_DEFLATE ? 1 : 0;
+            source.require((filter == H5Z_FILTER_SHUFFLE || filter == H5Z_FILTER_DEFLATE) && deflated <= 1, name,
                            "is packed in another way");
         }
         count_ = size[0];
+    }
+    /// Before memory is taken for so many of its bytes: a size is believed as far as what is stored can hold it. Deflate
+    /// packs 1,032 bytes into one at most.
+    void requireStored(std::uint64_t bytes) const {
+        source_->require(bytes / 1032 <= H5Dget_storage_size(set_.id()), name_, "is larger than what is stored of it");
     }
     [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
     [[nodiscard]] std::size_t width() const noexcept { return width_; }
@@ -178,6 +185,7 @@ struct SessionReader::State {
     }
     [[nodiscard]] std::vector<std::byte> bytesOf(const char* name, std::size_t most) const {
         const Rows rows(source, file.id(), name, H5T_STD_U8LE, 1, most);
+        rows.requireStored(rows.count());
         std::vector<std::byte> bytes(static_cast<std::size_t>(rows.count()));
         rows.read(0, bytes.size(), H5T_NATIVE_UINT8, bytes.data());
         return bytes;
@@ -373,6 +381,7 @@ KeyFrame SessionReader::keyFrame(std::size_t index) const {
     const State& s = *state_;
     if (index >= s.keyFrames.size()) throw core::Error(fmt::format("there is no key frame {}", index), "session");
     const KeyFrameRow& row = s.keyFrames[index];
+    s.keyFrameData.requireStored(row.bytes);
     KeyFrame frame{row.tick, std::vector<std::byte>(static_cast<std::size_t>(row.bytes))};
     s.keyFrameData.read(row.offset, frame.state.size(), H5T_NATIVE_UINT8, frame.state.data());
     s.source.require(hashOf(frame.state) == row.hash, "key_frames/data", "is not what was written");

@@ -47,8 +47,8 @@ void requireWhole(const Image& image, const std::string& where) {
 
 }  // namespace
 
-void writePng(const Image& image, const std::filesystem::path& path) {
-    requireWhole(image, path.string());
+std::vector<std::byte> pngOf(const Image& image) {
+    requireWhole(image, "the picture");
     PngImage png;
     png.image.width = static_cast<png_uint_32>(image.width);
     png.image.height = static_cast<png_uint_32>(image.height);
@@ -56,9 +56,13 @@ void writePng(const Image& image, const std::filesystem::path& path) {
     png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png.image);
     std::vector<std::byte> bytes(size);
     if (png_image_write_to_memory(&png.image, bytes.data(), &size, 0, image.rgba.data(), 0, nullptr) == 0)
-        throw core::Error(fmt::format("the picture cannot be packed: {}", png.image.message), path.string());
+        throw core::Error(fmt::format("the picture cannot be packed: {}", png.image.message));
     bytes.resize(size);
-    core::writeFile(path, bytes);
+    return bytes;
+}
+
+void writePng(const Image& image, const std::filesystem::path& path) {
+    core::writeFile(path, pngOf(image));
 }
 
 Image readPng(const std::filesystem::path& path) {

@@ -30,6 +30,8 @@ struct Image {
     }
 };
 
+/// The bytes of a PNG file. Throws core::Error.
+[[nodiscard]] std::vector<std::byte> pngOf(const Image& image);
 /// Written beside its place and renamed into it. Throws core::Error.
 void writePng(const Image& image, const std::filesystem::path& path);
 /// Throws core::Error: missing, no PNG, damaged, larger than 16384 a side.

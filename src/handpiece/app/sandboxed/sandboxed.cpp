@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/sandboxed/sandboxed.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/base/config/outside_json.h"
+#include "handpiece/base/config/words.h"
+#include "handpiece/base/core/engine_revision.h"
+#include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
+#include "handpiece/base/sandbox/sandbox.h"
+
+namespace handpiece::sandboxed {
+namespace {
+
+using Json = nlohmann::json;
+namespace fs = std::filesystem;
+
+core::Error noAnswer() {
+    return core::Error("what its reader says of it is no answer", "",
+                       "it is damaged, or was made to do this: record it again")
+        .as("sandbox-died", {"no answer"});
+}
+
+/// Of what the reader said. Every question of a kind that it has not is the file's fault.
+class Said {
+  public:
+    explicit Said(const std::string& text) : json_(config::outsideJson<Json>(text)) {
+        if (!json_.is_object()) throw noAnswer();
+    }
+    [[nodiscard]] std::string text(const char* key, std::size_t most) const { return textOf(at(key), most); }
+    [[nodiscard]] double number(const char* key) const { return numberOf(at(key)); }
+    [[nodiscard]] std::optional<double> numberIfAny(const char* key) const {
+        if (at(key).is_null()) return {};
+        return number(key);
+    }
+    [[nodiscard]] bool yes(const char* key) const {
+        if (!at(key).is_boolean()) throw noAnswer();
+        return at(key).get<bool>();
+    }
+    [[nodiscard]] std::size_t count(const char* key) const { return countOf(at(key)); }
+    [[nodiscard]] std::vector<std::string> texts(const char* key, std::size_t mostTexts, std::size_t most) const {
+        const Json& list = at(key);
+        if (!list.is_array() || list.size() > mostTexts) throw noAnswer();
+        std::vector<std::string> all;
+        for (const Json& one : list)
+            all.push_back(textOf(one, most));
+        return all;
+    }
+    [[nodiscard]] std::map<std::string, std::string> byLanguage(const char* key, std::size_t most) const {
+        const Json& list = at(key);
+        if (!list.is_object() || list.size() > 50) throw noAnswer();
+        std::map<std::string, std::string> all;
+        for (const auto& [language, words] : list.items())
+            all[language.substr(0, 16)] = textOf(words, most);
+        return all;
+    }
+    [[nodiscard]] const Json& at(const char* key) const {
+        const auto found = json_.find(key);
+        if (found == json_.end()) throw noAnswer();
+        return *found;
+    }
+    static double numberOf(const Json& one) {
+        if (!one.is_number() || !std::isfinite(one.get<double>())) throw noAnswer();
+        return one.get<double>();
+    }
+    static std::size_t countOf(const Json& one) {
+        if (!one.is_number_unsigned()) throw noAnswer();
+        return one.get<std::size_t>();
+    }
+
+  private:
+    static std::string textOf(const Json& one, std::size_t most) {
+        if (!one.is_string() || one.get_ref<const std::string&>().size() > most) throw noAnswer();
+        std::string text = one;
+        for (char& c : text)
+            if ((static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') || c == '\x7f') c = ' ';
+        return text;
+    }
+
+    Json json_;
+};
+
+sandbox::Answer asked(const char* work, Json request, const Files& files, const sandbox::Bounds& bounds,
+                      const core::Progress& progress = {}) {
+    std::vector<fs::path> readable = files.sessions;
+    Json sessions = Json::array();
+    for (fs::path& one : readable) {
+        one = core::wholePath(one);
+        sessions.push_back(one.string());
+    }
+    const fs::path exercise = files.exercise.empty() ? fs::path() : core::wholePath(files.exercise);
+    if (!exercise.empty()) readable.push_back(exercise);
+    request["work"] = work, request["language"] = config::words().language();
+    request["sessions"] = sessions, request["exercise"] = exercise.string();
+    return sandbox::ask(request.dump(-1, ' ', false, Json::error_handler_t::replace), readable, bounds, progress);
+}
+
+/// A recording of an hour has some 30 MB [R: docs/formats/session.md] and is cut again in minutes.
+sandbox::Bounds boundsFor(const Files& files) {
+    double megabytes = 0.0;
+    for (const fs::path& one : files.sessions) {
+        std::error_code ec;
+        const std::uintmax_t size = fs::file_size(one, ec);
+        if (!ec) megabytes += 1e-6 * static_cast<double>(size);
+    }
+    sandbox::Bounds bounds;
+    bounds.cpuS = std::min(600.0 + 120.0 * megabytes, 4.0 * 3600.0);
+    bounds.wallS = bounds.cpuS + 600.0;
+    return bounds;
+}
+/// Of what somebody waits for in front of a page.
+constexpr sandbox::Bounds kPage{.cpuS = 120.0, .wallS = 120.0};
+
+school::Score refusedFor(const core::Error& e) {
+    school::Score s;
+    s.state = "refused", s.passed = "teacher", s.reason = e.problem();
+    return s;
+}
+
+constexpr std::size_t kMostResult = 1u << 20, kMostWords = 16'384;
+
+bool isHash(const std::string& text, std::size_t digits) {
+    return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+Exercise exerciseFrom(const Said& said) {
+    Exercise e;
+    e.id = said.text("id", 64), e.hash = said.text("hash", 16), e.tooth = said.text("tooth", 1000);
+    e.level = said.text("level", 64), e.rubric = said.text("rubric", 1u << 20);
+    e.title = said.byLanguage("title", 1000), e.instructions = said.byLanguage("instructions", kMostWords);
+    const double version = said.number("version");
+    if (version < 0 || version > 1e15 || !isHash(e.hash, 16)) throw noAnswer();
+    e.version = static_cast<std::int64_t>(version);
+    e.minutes = said.numberIfAny("minutes"), e.voxelMm = said.number("voxel_mm");
+    e.hasPreparation = said.yes("has_preparation"), e.lockedHelps = said.texts("locked_helps", 100, 64);
+    return e;
+}
+
+}  // namespace
+
+Proof prove(const school::PushedAttempt& pushed, const Files& files, const std::string& rubric,
+            const std::optional<ExamNotes>& exam, const core::Progress& progress) {
+    const school::Attempt& a = pushed.attempt;
+    Json request{{"rubric", rubric},
+                 {"attempt",
+                  {{"id", a.id},
+                   {"exercise_hash", a.exerciseHash},
+                   {"rubric_hash", a.rubricHash},
+                   {"session_hashes", a.sessionHashes},
+                   {"device", a.device},
+                   {"score", a.score},
+                   {"max_score", a.maxScore},
+                   {"passed", a.passed}}}};
+    if (exam) request["exam"] = {{"locked", exam->locked}, {"entries", exam->entries}};
+    Proof proof;
+    try {
+        const sandbox::Answer answer = asked("prove", std::move(request), files, boundsFor(files), progress);
+        const Said said(answer.text);
+        school::Score& s = proof.score;
+        s.state = said.text("state", 16), s.reason = said.text("reason", kMostWords);
+        s.passed = said.text("passed", 16), s.stateHash = said.text("state_hash", 64);
+        s.score = said.number("score"), s.maxScore = said.number("max_score");
+        s.wholeScore = said.number("whole_score"), s.borderline = said.yes("borderline");
+        s.result = said.text("result", kMostResult);
+        const bool isKind = (s.state == "proven" || s.state == "refused") &&
+                            (s.passed == "yes" || s.passed == "no" || s.passed == "teacher") &&
+                            (s.state == "refused" || !s.result.empty());
+        if (!isKind) throw noAnswer();
+        if (!s.result.empty()) (void)assessment::parseResult(s.result, "what was found");
+        proof.contents = said.texts("contents", files.sessions.size(), 64);
+        if (proof.contents.size() != files.sessions.size()) throw noAnswer();
+        for (const std::string& one : proof.contents)
+            if (!one.empty() && !isHash(one, 64)) throw noAnswer();
+        proof.doubts = said.texts("doubts", 1000, 1000);
+    } catch (const core::Error& e) {
+        if (!sandbox::isFault(e) || e.id() == "sandbox-exercise") throw;
+        proof = {refusedFor(e), std::vector<std::string>(files.sessions.size()), {}};
+        if (exam) proof.doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
+    }
+    proof.score.attempt = a.id, proof.score.engine = core::kEngineRevision;
+    return proof;
+}
+
+report::Review review(const Files& files, const std::string& title, const std::string& result,
+                      const std::string& rubric, std::size_t mostBytes, const core::Progress& progress) {
+    sandbox::Bounds bounds = boundsFor(files);
+    bounds.answerBytes = 4 * mostBytes;
+    const sandbox::Answer answer =
+        asked("review", {{"title", title}, {"result", result}, {"rubric", rubric}, {"most", mostBytes}}, files, bounds,
+              progress);
+    const Said said(answer.text);
+    report::Review review;
+    review.json = said.text("review", 4 * mostBytes);
+    // It stands in a page between two tags.
+    if (review.json.find('<') != std::string::npos || !config::jsonProblem(review.json).empty()) throw noAnswer();
+    std::span<const std::byte> left(answer.bytes);
+    const auto taken = [&left](std::size_t size) {
+        if (size > left.size()) throw noAnswer();
+        const std::span<const std::byte> piece = left.first(size);
+        left = left.subspan(size);
+        return std::vector<std::byte>(piece.begin(), piece.end());
+    };
+    review.data = taken(said.count("data"));
+    const Json& pictures = said.at("pictures");
+    if (!pictures.is_array() || pictures.size() > 100) throw noAnswer();
+    for (const Json& one : pictures) {
+        if (!one.is_object() || !one.contains("time_s") || !one.contains("bytes")) throw noAnswer();
+        review.pictures.push_back({Said::numberOf(one.at("time_s")), taken(Said::countOf(one.at("bytes")))});
+    }
+    return review;
+}
+
+view::Image picture(const Files& files, int widthPx, int heightPx) {
+    view::Image image;
+    image.width = widthPx, image.height = heightPx;
+    sandbox::Bounds bounds = kPage;
+    const std::size_t size = 4 * static_cast<std::size_t>(widthPx) * static_cast<std::size_t>(heightPx);
+    bounds.answerBytes = size;
+    const sandbox::Answer answer = asked("picture", {{"width", widthPx}, {"height", heightPx}}, files, bounds);
+    if (answer.bytes.size() != size) throw noAnswer();
+    const auto* pixels = reinterpret_cast<const std::uint8_t*>(answer.bytes.data());
+    image.rgba.assign(pixels, pixels + size);
+    return image;
+}
+
+Exercise exercise(const fs::path& file) {
+    return exerciseFrom(Said(asked("exercise", Json::object(), {{}, file}, kPage).text));
+}
+
+PackedExercise pack(const fs::path& file, std::size_t mostBytes) {
+    sandbox::Bounds bounds = kPage;
+    bounds.answerBytes = mostBytes;
+    sandbox::Answer answer = asked("pack", Json::object(), {{}, file}, bounds);
+    const Said said(answer.text);
+    PackedExercise packed{exerciseFrom(said), std::move(answer.bytes)};
+    if (packed.file.empty()) throw noAnswer();
+    return packed;
+}
+
+std::string studentReport(const fs::path& exercise, const std::string& result, const std::string& rubric) {
+    sandbox::Bounds bounds = kPage;
+    bounds.answerBytes = 8u << 20;
+    std::string page = asked("student report", {{"result", result}, {"rubric", rubric}}, {{}, exercise}, bounds).text;
+    if (page.empty()) throw noAnswer();
+    return page;
+}
+
+}  // namespace handpiece::sandboxed

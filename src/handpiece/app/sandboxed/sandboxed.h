@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// What a school's server reads of strangers' files, each time in a process that holds nothing (base/sandbox): sessions
+/// and exercises. docs/sandbox.md.
+///
+/// What a file does to its reader stays there; what comes back is looked at here before it is believed to be of its
+/// kind. Whether it is true nobody but its own reader knows: a file that takes its reader over can have it say of this
+/// file whatever it likes, and of no other.
+///
+/// All throw core::Error: what the reader says of the file, and by id what sandbox::ask() says of the reader. Texts
+/// that come back are UTF-8 without control characters other than line ends.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "handpiece/app/report/review.h"
+#include "handpiece/base/core/progress.h"
+#include "handpiece/model/case/exercise.h"
+#include "handpiece/school/store/books.h"
+#include "handpiece/senses/view/image.h"
+
+namespace handpiece::sandboxed {
+
+/// Sessions of one work in their order, and the file of the exercise, whose name ends in .handpiece.
+struct Files {
+    std::vector<std::filesystem::path> sessions{};
+    std::filesystem::path exercise{};  ///< empty: none
+};
+
+/// What a station noted while an exam was worked.
+struct ExamNotes {
+    std::vector<std::string> locked{}, entries{};
+};
+struct Proof {
+    school::Score score{};
+    std::vector<std::string> contents{};  ///< by session, its inputs as one number; empty: nothing was done in it
+    std::vector<std::string> doubts{};    ///< of its exam, as proving::recordingDoubts()
+};
+/// As proving::prove(), of an attempt that was pushed; `rubric` is its text. Of `score`, `attempt` and `rubric` are the
+/// caller's. Never throws for a session that cannot be read: it is refused, as one is that ends its reader. What is
+/// wrong with exercise or rubric throws "sandbox-exercise".
+[[nodiscard]] Proof prove(const school::PushedAttempt& attempt, const Files& files, const std::string& rubric,
+                          const std::optional<ExamNotes>& exam, const core::Progress& progress = {});
+
+/// What a review page shows. `result` and `rubric` are texts of the books; empty: the work is shown alone.
+[[nodiscard]] report::Review review(const Files& files, const std::string& title, const std::string& result,
+                                    const std::string& rubric, std::size_t mostBytes,
+                                    const core::Progress& progress = {});
+
+/// The tooth as this work leaves it, from occlusal.
+[[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);
+
+/// What pages say of an exercise.
+struct Exercise {
+    std::string id{}, hash{}, tooth{}, level{}, rubric{};
+    cases::Texts title{}, instructions{};  ///< by language
+    std::int64_t version = 0;
+    std::optional<double> minutes{};
+    double voxelMm = 0.0;
+    bool hasPreparation = false;
+    std::vector<std::string> lockedHelps{};
+};
+[[nodiscard]] Exercise exercise(const std::filesystem::path& file);
+/// An exercise's file or folder as this program writes it. Throws core::Error also for one without a rubric.
+struct PackedExercise {
+    Exercise exercise{};
+    std::vector<std::byte> file{};
+};
+[[nodiscard]] PackedExercise pack(const std::filesystem::path& file, std::size_t mostBytes);
+
+/// report::studentReport() without pictures: a page.
+[[nodiscard]] std::string studentReport(const std::filesystem::path& exercise, const std::string& result,
+                                        const std::string& rubric);
+
+}  // namespace handpiece::sandboxed

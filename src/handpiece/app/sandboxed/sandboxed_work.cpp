@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/app/sandboxed/sandboxed_work.h"
+
+#include <fmt/format.h>
+
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/marking/scoring.h"
+#include "handpiece/app/proving/exam_check.h"
+#include "handpiece/app/proving/proving.h"
+#include "handpiece/app/report/assessment_report.h"
+#include "handpiece/app/report/review.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
+#include "handpiece/assess/rubric/rubric.h"
+#include "handpiece/base/config/outside_json.h"
+#include "handpiece/base/config/words.h"
+#include "handpiece/base/core/error.h"
+
+namespace handpiece::sandboxed {
+namespace {
+
+using Json = nlohmann::json;
+using sandbox::Answer;
+
+std::vector<std::filesystem::path> sessionsOf(const Json& asked) {
+    std::vector<std::filesystem::path> all;
+    for (const std::string& one : asked.at("sessions").get<std::vector<std::string>>())
+        all.emplace_back(one);
+    return all;
+}
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// One byte more, and it is another file; not another work.
+std::string contentOf(const std::filesystem::path& session) {
+    try {
+        proving::RecordedInputs inputs(session);
+        inputs.goOn();
+        return inputs.hasMoved() ? inputs.hash() : std::string();
+    } catch (const core::Error&) {
+        return {};  // the proof says why
+    }
+}
+
+std::vector<std::string> doubtsOf(const Json& exam, std::span<const std::filesystem::path> sessions) {
+    try {
+        std::vector<exam::Entry> entries;
+        for (const std::string& text : exam.at("entries").get<std::vector<std::string>>())
+            entries.push_back(exam::entryFrom(text, "the books"));
+        return proving::recordingDoubts(exam.at("locked").get<std::vector<std::string>>(), entries, sessions);
+    } catch (const core::Error& e) {
+        return {"its recordings cannot be held against what was noted: " + e.problem()};
+    }
+}
+
+/// What is wrong with the school's own is no fault of the work.
+template <class Read>
+auto schoolsOwn(Read read) {
+    try {
+        return read();
+    } catch (const core::Error& e) {
+        throw core::Error(e.problem(), e.where(), e.remedy()).as("sandbox-exercise", {e.problem()});
+    }
+}
+
+Answer prove(const Json& asked, const core::Progress& progress) {
+    const tasks::Task task = schoolsOwn([&] { return tasks::readTask(asked.at("exercise").get<std::string>()); });
+    const rubric::Rubric rubric = schoolsOwn([&] {
+        rubric::Rubric read = rubric::parseRubric(asked.at("rubric").get<std::string>(), "the rubric");
+        rubric::requireSound(read);
+        return read;
+    });
+    const std::vector<std::filesystem::path> sessions = sessionsOf(asked);
+    Json contents = Json::array();
+    for (const std::filesystem::path& one : sessions)
+        contents.push_back(contentOf(one));
+    school::PushedAttempt pushed;
+    school::Attempt& a = pushed.attempt;
+    const Json& of = asked.at("attempt");
+    a.id = of.at("id"), a.exerciseHash = of.at("exercise_hash"), a.rubricHash = of.at("rubric_hash");
+    a.sessionHashes = of.at("session_hashes").get<std::vector<std::string>>();
+    a.device = of.at("device"), a.score = of.at("score"), a.maxScore = of.at("max_score"), a.passed = of.at("passed");
+    const school::Score s = proving::prove(pushed, sessions, task, rubric, progress);
+    const Json doubts = asked.contains("exam") ? Json(doubtsOf(asked.at("exam"), sessions)) : Json::array();
+    return {dumped({{"state", s.state},
+                    {"reason", s.reason},
+                    {"state_hash", s.stateHash},
+                    {"score", s.score},
+                    {"max_score", s.maxScore},
+                    {"whole_score", s.wholeScore},
+                    {"passed", s.passed},
+                    {"borderline", s.borderline},
+                    {"result", s.result},
+                    {"contents", contents},
+                    {"doubts", doubts}})};
+}
+
+Answer review(const Json& asked, const core::Progress& progress) {
+    std::vector<report::Reviewed> chain;
+    for (const std::filesystem::path& one : sessionsOf(asked))
+        chain.push_back({one, fmt::format("session {}", chain.size() + 1), {}});
+    const std::string exercise = asked.at("exercise"), result = asked.at("result"), text = asked.at("rubric");
+    report::ReviewedAgainst against;
+    std::optional<tasks::Task> task;
+    std::optional<score::Result> scored;
+    std::optional<rubric::Rubric> rubric;
+    if (!exercise.empty() && !result.empty() && !text.empty()) {
+        task = tasks::readTask(exercise);
+        scored = assessment::parseResult(result, "the books");
+        rubric = rubric::parseRubric(text, "the rubric");
+        against = {&*task, &*scored, &*rubric};
+    }
+    const report::Review made = report::reviewOf(chain, asked.at("title"), against, true, asked.at("most"), progress);
+    Answer answer{made.json, made.data};
+    Json pictures = Json::array();
+    for (const report::Review::Picture& one : made.pictures) {
+        pictures.push_back({{"time_s", one.timeS}, {"bytes", one.png.size()}});
+        answer.bytes.insert(answer.bytes.end(), one.png.begin(), one.png.end());
+    }
+    answer.text = dumped({{"review", made.json}, {"data", made.data.size()}, {"pictures", pictures}});
+    return answer;
+}
+
+Answer picture(const Json& asked, const core::Progress& progress) {
+    const tasks::Task task = tasks::readTask(asked.at("exercise").get<std::string>());
+    std::vector<assessment::ChainLink> chain;
+    for (const std::filesystem::path& one : sessionsOf(asked))
+        chain.push_back({fmt::format("{}.h5", chain.size() + 1), one});
+    // Whether it is proven is asked elsewhere: what is seen here is what the last session left.
+    const assessment::Work work = assessment::readChain(chain, task, false, progress);
+    const view::Image image =
+        marking::pictureOf(work, task.toothCase.buccalSign, asked.at("width"), asked.at("height"));
+    const auto* pixels = reinterpret_cast<const std::byte*>(image.rgba.data());
+    return {{}, {pixels, pixels + image.rgba.size()}};
+}
+
+Json factsOf(const tasks::Task& task) {
+    const auto& texts = task.toothCase.exercise;
+    return Json{{"id", task.id},
+                {"version", task.version},
+                {"hash", rubric::hashText(tasks::contentHash(task))},
+                {"tooth", task.toothCase.name},
+                {"level", task.level},
+                {"minutes", task.minutes ? Json(*task.minutes) : Json()},
+                {"voxel_mm", task.voxelMm},
+                {"has_preparation", task.preparation.has_value()},
+                {"rubric", task.rubric},
+                {"locked_helps", texts ? texts->lockedHelps : std::vector<std::string>()},
+                {"title", texts ? texts->title : cases::Texts()},
+                {"instructions", texts ? texts->instructions : cases::Texts()}};
+}
+
+Answer exercise(const Json& asked, const core::Progress&) {
+    return {dumped(factsOf(tasks::readTask(asked.at("exercise").get<std::string>())))};
+}
+
+Answer pack(const Json& asked, const core::Progress&) {
+    const std::string file = asked.at("exercise");
+    const tasks::Task task = tasks::readTask(file);
+    if (task.rubric.empty())
+        throw core::Error("this exercise has no rubric, so its work cannot be scored", file, "give it one")
+            .as("exercise-unscored");
+    return {dumped(factsOf(task)), tasks::packedTask(task)};
+}
+
+Answer studentReport(const Json& asked, const core::Progress&) {
+    return {report::studentReport(assessment::parseResult(asked.at("result").get<std::string>(), "the books"),
+                                  tasks::readTask(asked.at("exercise").get<std::string>()),
+                                  rubric::parseRubric(asked.at("rubric").get<std::string>(), "the rubric"))};
+}
+
+}  // namespace
+
+Answer answer(const std::string& request, const core::Progress& progress) {
+    static const std::map<std::string, Answer (*)(const Json&, const core::Progress&)> works{
+        {"prove", prove},       {"review", review}, {"picture", picture},
+        {"exercise", exercise}, {"pack", pack},     {"student report", studentReport}};
+    const Json asked = config::requireOutsideJson<Json>(request, {.values = 10'000'000});
+    const config::LanguageHere here(asked.at("language").get<std::string>());
+    return works.at(asked.at("work"))(asked, progress);
+}
+
+}  // namespace handpiece::sandboxed

@@ -16,7 +16,7 @@ THIRD_PARTY = {
     r"tbb/|oneapi/tbb": r"src/handpiece/base/core/parallel\.cpp",
     r"toml\+\+|toml\.hpp": r"src/handpiece/base/config/\w+\.cpp",
     r"zip\.h": r"src/handpiece/model/case/(large_)?package\.cpp|src/handpiece/scan/volume/files\.cpp|tests/.*",
-    r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp|src/handpiece/app/tables/tables_hdf5\.cpp|tests/app/tables/.*",
+    r"hdf5\.h|H5": r"src/handpiece/record/session/\w+\.cpp|src/handpiece/app/tables/tables_hdf5\.cpp|tests/app/(tables|sandboxed)/.*",
     r"zlib\.h": r"src/handpiece/base/prepared/packed_bytes\.cpp|src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",

@@ -217,6 +217,15 @@ report::Review review(const Files& files, const std::string& title, const std::s
     return review;
 }
 
+ReadThrough readThrough(const fs::path& session) {
+    const Files files{{session}, {}};
+    sandbox::Bounds bounds = boundsFor(files);
+    bounds.answerBytes = 4096;
+    const sandbox::Answer answer = asked("session", Json::object(), files, bounds);
+    const Said said(answer.text);
+    return {said.count("ticks"), said.count("events"), said.count("key_frames"), answer.peakBytes};
+}
+
 view::Image picture(const Files& files, int widthPx, int heightPx) {
     view::Image image;
     image.width = widthPx, image.height = heightPx;

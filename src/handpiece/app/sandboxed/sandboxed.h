@@ -52,6 +52,13 @@ struct Proof {
                                     const std::string& rubric, std::size_t mostBytes,
                                     const core::Progress& progress = {});
 
+/// Reads all of a session, and keeps nothing of it.
+struct ReadThrough {
+    std::uint64_t ticks = 0, events = 0, keyFrames = 0;
+    std::uint64_t peakBytes = 0;  ///< of memory that its reader had
+};
+[[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session);
+
 /// The tooth as this work leaves it, from occlusal.
 [[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);
 

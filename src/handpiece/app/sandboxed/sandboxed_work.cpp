@@ -15,10 +15,13 @@
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/review.h"
 #include "handpiece/app/sandboxed/sandboxed.h"
+#include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/case_bytes.h"
+#include "handpiece/record/session/session_reader.h"
 
 namespace handpiece::sandboxed {
 namespace {
@@ -126,6 +129,23 @@ Answer review(const Json& asked, const core::Progress& progress) {
     return answer;
 }
 
+Answer readThrough(const Json& asked, const core::Progress&) {
+    std::uint64_t ticks = 0, events = 0, keyFrames = 0;
+    for (const std::filesystem::path& one : sessionsOf(asked)) {
+        constexpr std::size_t kStretch = 10'000;
+        const session::SessionReader reader(one);
+        const std::string where = one.filename().string();
+        (void)simulation::settingsFromJson(reader.info().settings, where);
+        (void)cases::decodeCase(reader.info().tooth, where);
+        for (std::uint64_t at = 0; at < reader.size(); at += kStretch)
+            (void)reader.records(at, kStretch);
+        for (std::size_t i = 0; i < reader.keyFrameTicks().size(); ++i)
+            (void)reader.keyFrame(i);
+        ticks += reader.size(), events += reader.events().size(), keyFrames += reader.keyFrameTicks().size();
+    }
+    return {dumped({{"ticks", ticks}, {"events", events}, {"key_frames", keyFrames}})};
+}
+
 Answer picture(const Json& asked, const core::Progress& progress) {
     const tasks::Task task = tasks::readTask(asked.at("exercise").get<std::string>());
     std::vector<assessment::ChainLink> chain;
@@ -178,8 +198,13 @@ Answer studentReport(const Json& asked, const core::Progress&) {
 
 Answer answer(const std::string& request, const core::Progress& progress) {
     static const std::map<std::string, Answer (*)(const Json&, const core::Progress&)> works{
-        {"prove", prove},       {"review", review}, {"picture", picture},
-        {"exercise", exercise}, {"pack", pack},     {"student report", studentReport}};
+        {"prove", prove},
+        {"review", review},
+        {"picture", picture},
+        {"session", readThrough},
+        {"exercise", exercise},
+        {"pack", pack},
+        {"student report", studentReport}};
     const Json asked = config::requireOutsideJson<Json>(request, {.values = 10'000'000});
     const config::LanguageHere here(asked.at("language").get<std::string>());
     return works.at(asked.at("work"))(asked, progress);

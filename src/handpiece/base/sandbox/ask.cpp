@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 core::Error cannotStart(const std::string& why) {
-    return core::Error(fmt::format("nothing from outside is read here: {}", why), programPath().string(),
+    return core::Error(fmt::format("nothing from outside is read here: {}", why), "handpiece-sandbox",
                        "give it a kernel with Landlock and seccomp (Linux 5.13 or later), and the whole installation")
         .as("sandbox-start", {why});
 }
@@ -89,8 +89,7 @@ std::vector<std::string> surroundings() {
 /// One child, gone when this goes.
 class Child {
   public:
-    explicit Child(const Order& order) {
-        const fs::path program = programPath();
+    Child(const Order& order, const fs::path& program) {
         if (program.empty()) throw cannotStart("its program handpiece-sandbox is not there");
         Descriptor asked;
         filled(asked, order.packed());
@@ -188,6 +187,33 @@ class Child {
     std::string complaint_;
 };
 
+/// UTF-8 without control characters, as pages and databases take it.
+std::string plain(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        const auto at = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
+        const unsigned first = at(i), second = at(i + 1);
+        std::size_t length = first < 0x80                    ? 1
+                             : first >= 0xc2 && first < 0xe0 ? 2
+                             : first >= 0xe0 && first < 0xf0 ? 3
+                                                             : 4;
+        bool isGood = first < 0x80 || (first >= 0xc2 && first < 0xf5);
+        for (std::size_t k = 1; isGood && k < length; ++k)
+            isGood = (at(i + k) & 0xc0u) == 0x80u;
+        // Too long a form of a small number, halves of pairs, beyond the last.
+        if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
+            (first == 0xf4 && second >= 0x90))
+            isGood = false;
+        if (!isGood) length = 1;
+        if (isGood && first >= ' ' && first != 0x7f)
+            out += text.substr(i, length);
+        else
+            out += isGood ? ' ' : '?';
+        i += length;
+    }
+    return out;
+}
+
 /// What the child sends, as it comes.
 class Hearing {
   public:
@@ -244,10 +270,11 @@ class Hearing {
     }
     [[noreturn]] static void fail(std::string_view piece) {
         Taker taker(piece);
-        const std::string id = taker.text(), problem = taker.text(), where = taker.text(), remedy = taker.text();
+        const std::string id = plain(taker.text()), problem = plain(taker.text()), where = plain(taker.text()),
+                          remedy = plain(taker.text());
         std::vector<std::string> arguments;
         while (taker.isWhole && !taker.isEmpty())
-            arguments.push_back(taker.text());
+            arguments.push_back(plain(taker.text()));
         // Its own troubles are told by who started it alone.
         if (!taker.isWhole || id == "sandbox-start" || id == "sandbox-killed" || id == "cancelled" ||
             problem == "cancelled")
@@ -273,13 +300,13 @@ bool isFault(const core::Error& e) {
 }
 
 Answer ask(const std::string& request, std::span<const fs::path> readable, const Bounds& bounds,
-           const core::Progress& progress) {
+           const core::Progress& progress, const fs::path& program) {
     Order order;
     order.memoryBytes = bounds.memoryBytes, order.cpuS = static_cast<std::uint64_t>(bounds.cpuS) + 1;
     for (const fs::path& one : readable)
         order.readable.push_back(core::wholePath(one).string());
     order.request = request;
-    Child child(order);
+    Child child(order, program);
     Hearing heard(bounds.answerBytes);
     const Clock::time_point until = Clock::now() + std::chrono::milliseconds(static_cast<long>(1e3 * bounds.wallS));
     const core::Error slow = core::Error(fmt::format("it takes longer than the {:.0f} minutes that anybody's work may",

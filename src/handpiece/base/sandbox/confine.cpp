@@ -19,6 +19,7 @@
 #include <csignal>
 #include <cstddef>
 #include <cstring>
+#include <initializer_list>
 #include <iterator>
 
 #include "handpiece/base/sandbox/frames.h"
@@ -179,23 +180,11 @@ class Filter {
         // Its flags cannot be looked at; the C library does with the older one then.
         on(SYS_clone3, SECCOMP_RET_ERRNO | ENOSYS);
         on(SYS_ioctl, SECCOMP_RET_ERRNO | ENOTTY);
-        onArgument(SYS_clone, 0, [this] {
-            jump(BPF_JSET, 0x00010000u /* CLONE_THREAD */, 0, 1);
-            give(SECCOMP_RET_ALLOW);
-        });
-        onArgument(SYS_tgkill, 0, [this] {
-            jump(BPF_JEQ, static_cast<std::uint32_t>(getpid()), 0, 1);
-            give(SECCOMP_RET_ALLOW);
-        });
-        onArgument(SYS_prctl, 0, [this] {
-            jump(BPF_JEQ, PR_SET_NAME, 0, 1);
-            give(SECCOMP_RET_ALLOW);
-        });
-        // Its own limits, which it can only make narrower.
-        onArgument(SYS_prlimit64, 0, [this] {
-            jump(BPF_JEQ, 0, 0, 1);
-            give(SECCOMP_RET_ALLOW);
-        });
+        onlyIf(SYS_clone, {{0, BPF_JSET, 0x00010000u /* CLONE_THREAD */}});
+        onlyIf(SYS_tgkill, {{0, BPF_JEQ, static_cast<std::uint32_t>(getpid())}});
+        onlyIf(SYS_prctl, {{0, BPF_JEQ, PR_SET_NAME}});
+        // Its own limits are looked up, and none is set.
+        onlyIf(SYS_prlimit64, {{0, BPF_JEQ, 0}, {2, BPF_JEQ, 0}, {2, BPF_JEQ, 0, true}});
         give(SECCOMP_RET_ERRNO | EPERM);
     }
     [[nodiscard]] std::string install() {
@@ -217,14 +206,24 @@ class Filter {
         jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 1);
         give(what);
     }
-    template <class Then>
-    void onArgument(long call, std::size_t which, Then then) {
+    /// Half of an argument, held against a number.
+    struct Condition {
+        std::size_t argument;
+        std::uint16_t how;
+        std::uint32_t number;
+        bool isUpper = false;
+    };
+    void onlyIf(long call, std::initializer_list<Condition> all) {
         const std::size_t at = lines_.size();
         jump(BPF_JEQ, static_cast<std::uint32_t>(call), 0, 0);
-        add(BPF_LD | BPF_W | BPF_ABS,
-            static_cast<std::uint32_t>(offsetof(seccomp_data, args) + which * sizeof(std::uint64_t)));
-        then();
-        give(SECCOMP_RET_ERRNO | EPERM);
+        for (const Condition& one : all) {
+            add(BPF_LD | BPF_W | BPF_ABS,
+                static_cast<std::uint32_t>(offsetof(seccomp_data, args) + one.argument * sizeof(std::uint64_t) +
+                                           (one.isUpper ? sizeof(std::uint32_t) : 0)));
+            jump(one.how, one.number, 1, 0);
+            give(SECCOMP_RET_ERRNO | EPERM);
+        }
+        give(SECCOMP_RET_ALLOW);
         lines_[at].jf = static_cast<std::uint8_t>(lines_.size() - at - 1);
     }
 

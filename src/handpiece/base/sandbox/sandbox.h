@@ -29,6 +29,9 @@ struct Answer {
     std::uint64_t peakBytes = 0;  ///< of memory that the child had; filled in by ask()
 };
 
+/// Where handpiece-sandbox lies: beside this program, or in ../libexec/handpiece of it; empty where it is not.
+[[nodiscard]] std::filesystem::path programPath();
+
 /// Starts the program that calls serve(), hands it `request`, and waits for its answer. `readable`: the only files that
 /// it may open, besides the system's libraries. `progress` is called ten times a second, in this thread.
 ///
@@ -38,7 +41,8 @@ struct Answer {
 /// - "sandbox-died": reading ended it, or it answered what is no answer;
 /// - "sandbox-slow", "sandbox-large": it passed its bounds of time, or of memory.
 [[nodiscard]] Answer ask(const std::string& request, std::span<const std::filesystem::path> readable,
-                         const Bounds& bounds = {}, const core::Progress& progress = {});
+                         const Bounds& bounds = {}, const core::Progress& progress = {},
+                         const std::filesystem::path& program = programPath());
 
 /// Whether an error of ask() is the fault of what was read; it will be the same again.
 [[nodiscard]] bool isFault(const core::Error& error);
@@ -48,8 +52,5 @@ using Work = std::function<Answer(const std::string& request, const core::Progre
 /// The child's main: reads what it is asked, locks itself in, works, answers. Only where ask() has started it. Returns
 /// the exit code.
 [[nodiscard]] int serve(const Work& work);
-
-/// The program that ask() starts: beside this one, or in ../libexec/handpiece of where it lies.
-[[nodiscard]] std::filesystem::path programPath();
 
 }  // namespace handpiece::sandbox

@@ -105,8 +105,8 @@ class Rows {
         }
         count_ = size[0];
     }
-    /// Before memory is taken for so many of its bytes: a size is believed as far as what is stored can hold it. Deflate
-    /// packs 1,032 bytes into one at most.
+    /// Before memory is taken for so many of its bytes: a size is believed as far as what is stored can hold it.
+    /// Deflate packs 1,032 bytes into one at most.
     void requireStored(std::uint64_t bytes) const {
         source_->require(bytes / 1032 <= H5Dget_storage_size(set_.id()), name_, "is larger than what is stored of it");
     }

@@ -20,7 +20,7 @@ THIRD_PARTY = {
     r"zlib\.h": r"src/handpiece/base/prepared/packed_bytes\.cpp|src/handpiece/record/history/\w+\.cpp|src/handpiece/model/tooth/state_file\.cpp|src/handpiece/scan/volume/(nifti|samples|write_scan)\.cpp|src/handpiece/app/report/review_data\.cpp|tests/.*",
     r"sqlite3\.h": r"src/handpiece/school/store/\w+\.cpp|tests/school/.*",
     r"libpq-fe\.h": r"src/handpiece/school/store/database_postgres\.cpp|tests/school/.*",
-    r"sodium\.h": r"src/handpiece/base/prepared/prepared_files\.cpp|src/handpiece/school/(store/content_files|people/secret|exam/signing)\.cpp",
+    r"sodium\.h": r"src/handpiece/base/prepared/prepared_files\.cpp|src/handpiece/school/(store/content_files|people/secret|exam/(seal|signing))\.cpp",
     r"openssl/": r"apps/school/jwt\.cpp",
     r"CLI/|CLI11": r"apps/cli/(app|command)\.cpp",
     r"pybind11/|Python\.h": r"apps/python/.*",

@@ -8,6 +8,7 @@
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/exam/lines.h"
+#include "handpiece/school/people/secret.h"
 
 namespace handpiece::school_server {
 namespace {
@@ -76,20 +77,38 @@ school::ExamPack signExam(Books& books, const std::string& id, const exam::Signi
     p.rubric = assignment->rubric, p.rubricFormat = exam::kRubricFormat, p.engine = core::kEngineRevision;
     p.opens = assignment->opens, p.closes = assignment->closes, p.minutes = settings->minutes;
     p.locked = exam::partsOf(settings->locked, ' ');
-    for (const school::ExamCandidate& c : exams.candidates(id))
-        p.candidates.push_back({c.code, c.extraPercent, c.pauseMinutes, exam::partsOf(c.helps, ' ')});
+    const std::vector<school::ExamConfirmation> confirmations = exams.confirmations(id);
+    for (const school::ExamCandidate& c : exams.candidates(id)) {
+        exam::Candidate one{c.code, c.extraPercent, c.pauseMinutes, exam::partsOf(c.helps, ' ')};
+        for (const school::ExamConfirmation& code : confirmations)
+            if (code.person == c.person) one.confirmations.push_back(code.hash);
+        // The newest sheet holds.
+        if (one.confirmations.size() > exam::kConfirmations)
+            one.confirmations.erase(one.confirmations.begin(), one.confirmations.end() - exam::kConfirmations);
+        if (one.confirmations.empty())
+            throw core::Error("there are no confirmation codes for candidate " + c.person, id,
+                              "make the invigilators' sheet: handpiece school exam sheet")
+                .as("exam-empty", {id});
+        p.candidates.push_back(std::move(one));
+    }
     for (const school::ExamInvigilator& i : exams.invigilators(id))
-        p.invigilators.push_back({i.person, i.pin});
+        p.invigilators.push_back({i.person});
     if (p.candidates.empty() || p.invigilators.empty())
         throw core::Error(p.candidates.empty() ? "this exam has no candidates" : "this exam has no invigilator", id,
                           "add them: handpiece school exam candidates, handpiece school exam invigilator")
             .as("exam-empty", {id});
+    const std::string opening = exams.openingCode(id, school::newStationCode(), act);
     const auto newest = exams.newestPack(id);
     if (newest) {
         p.version = newest->version;
+        // Its hash is another each time: of the same code it stays as it was.
+        if (const exam::Pack before = exam::packFrom(newest->text, "the books");
+            school::isPassword(before.seal, opening))
+            p.seal = before.seal;
         if (exam::toText(p) == newest->text && newest->key == key.open) return *newest;
         ++p.version;
     }
+    if (p.seal.empty()) p.seal = school::hashOfPassword(opening);
     school::ExamPack made;
     made.exam = id, made.version = p.version, made.text = exam::toText(p), made.hash = school::sha256(made.text);
     const exam::Signature signature = exam::signatureOf(made.text, key);
@@ -100,6 +119,15 @@ school::ExamPack signExam(Books& books, const std::string& id, const exam::Signi
 
 namespace {
 constexpr const char* kBroken = "exam chain broken";
+
+/// The number of the code that an invigilator typed. Whoever has the station's key has none.
+std::int64_t confirmationOf(ExamBooks& exams, const exam::Entry& e, const std::string& person) {
+    for (const school::ExamConfirmation& one : exams.confirmations(e.exam))
+        if (one.person == person && school::isPassword(one.hash, e.confirmation)) return one.number;
+    throw core::Error("no invigilator of this exam has confirmed this candidate", "station " + e.station,
+                      "an invigilator types a code of their sheet at the station")
+        .as("exam-invigilator", {e.invigilator});
+}
 bool takeSigned(Books& books, const std::string& station, std::string_view joined, Milliseconds now) {
     ExamBooks exams(books);
     const exam::Signed entry = exam::parted(joined, "station " + station);
@@ -118,8 +146,10 @@ bool takeSigned(Books& books, const std::string& station, std::string_view joine
         if (!pack || pack->exam != e.exam) throw notHere("exam's pack", e.pack);
         const auto person = exams.personOfCode(e.exam, e.candidate);
         if (!person) throw notHere("candidate", e.candidate);
-        const school::ExamSitting begins{e.sitting, e.exam,   station, *person, e.candidate, e.pack, e.invigilator,
-                                         e.at,      e.number, "begun", 0};
+        const std::int64_t confirmation =
+            exam::packFrom(pack->text, "the books").format == 1 ? 0 : confirmationOf(exams, e, *person);
+        const school::ExamSitting begins{e.sitting,     e.exam, station,  *person, e.candidate, e.pack,
+                                         e.invigilator, e.at,   e.number, "begun", 0,           confirmation};
         return exams.add(kept, &begins, nullptr);
     }
     if (e.kind == "finished") {
@@ -127,6 +157,12 @@ bool takeSigned(Books& books, const std::string& station, std::string_view joine
         if (!sitting || sitting->station != station) throw notHere("sitting", e.sitting);
         const school::PushedAttempt attempt = attemptOf(books, *sitting, packOf(exams, *sitting), e, now);
         return exams.add(kept, nullptr, &attempt);
+    }
+    if (e.kind == "given-up") {
+        const auto sitting = exams.sitting(e.sitting);
+        if (!sitting || sitting->station != station) throw notHere("sitting", e.sitting);
+        e.exam = sitting->exam;
+        if (packOf(exams, *sitting).format != 1) (void)confirmationOf(exams, e, sitting->person);
     }
     return exams.add(kept, nullptr, nullptr);
 }
@@ -167,6 +203,10 @@ std::vector<std::string> doubtsOf(Books& books, const school::ExamSitting& sitti
     for (const school::ExamEntry& one : entries)
         received.push_back(one.received);
     std::vector<std::string> doubts = exam::doubtsOf(packOf(exams, sitting), parsed(entries), received);
+    if (sitting.confirmation == 0)
+        doubts.push_back("that an invigilator confirmed the identity is its station's word: its pack is of before");
+    if (sitting.confirmation < 0)
+        doubts.push_back("the code that confirmed the identity had been used for another beginning");
     for (std::string& one : exams.doubtsOf(sitting.id))
         doubts.push_back(std::move(one));
     for (const school::AuditLine& line : books.audit(0, 10'000, sitting.station))

@@ -116,12 +116,46 @@ void setCandidates(const ExamOptions& o) {
         }
 }
 
+/// Since sheets there are codes for each candidate, and none of an invigilator's own.
+constexpr const char* kNoPin = "-";
+
 void setInvigilator(const ExamOptions& o) {
     const SchoolSettings place = placeOfBooks(o.data, o.database);
     Books books(place.data, place.database);
-    const std::string pin = school::newStationCode();
-    ExamBooks(books).set(school::ExamInvigilator{o.exam, o.person, school::hashOfPassword(pin)}, now());
-    fmt::print("{} {}\n", o.person, pin);
+    ExamBooks(books).set(school::ExamInvigilator{o.exam, o.person, kNoPin}, now());
+    fmt::print("{} may confirm who sits there\n", o.person);
+}
+
+/// On paper, for invigilators' eyes: the books keep hashes.
+void printSheet(const ExamOptions& o) {
+    const SchoolSettings place = placeOfBooks(o.data, o.database);
+    Books books(place.data, place.database);
+    ExamBooks exams(books);
+    if (!exams.settings(o.exam))
+        throw core::Error("there is no such exam", o.exam, "make it: handpiece school exam new");
+    const std::vector<school::ExamConfirmation> there = exams.confirmations(o.exam);
+    for (const school::ExamCandidate& one : exams.candidates(o.exam)) {
+        if (!o.person.empty() && one.person != o.person) continue;
+        const bool isThere =
+            std::any_of(there.begin(), there.end(), [&](const auto& c) { return c.person == one.person; });
+        if (isThere && o.person.empty()) {
+            fmt::print("{} (the codes of before)\n", one.person);
+            continue;
+        }
+        std::string line = one.person;
+        for (std::size_t i = 0; i < exam::kConfirmations; ++i) {
+            const std::string code = school::newStationCode();
+            exams.add(school::ExamConfirmation{o.exam, one.person, 0, school::hashOfPassword(code)}, now());
+            line += " " + code;
+        }
+        fmt::print("{}\n", line);
+    }
+    fmt::print("opening {}\n", exams.openingCode(o.exam, school::newStationCode(), now()));
+}
+
+void openHere(const ExamOptions& o) {
+    school_exam::ExamClient(o.socket).open(readSecret("opening code"));
+    fmt::print("open\n");
 }
 
 void releaseStation(const ExamOptions& o) {
@@ -297,11 +331,19 @@ void addServersExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opti
     candidates.callback([options] { setCandidates(*options); });
 
     cli::Command invigilator =
-        top.subcommand("invigilator", "Who may confirm a candidate's identity, with a code that is told once" + where);
+        top.subcommand("invigilator", "Who may confirm a candidate's identity, by codes of the sheet" + where);
     books(invigilator);
     invigilator.option("EXAM", o.exam, "its id").required();
     invigilator.option("PERSON", o.person, "their code").required();
     invigilator.callback([options] { setInvigilator(*options); });
+
+    cli::Command sheet = top.subcommand(
+        "sheet",
+        "Codes on paper for invigilators, told once: three for each candidate who has none, and what opens it" + where);
+    books(sheet);
+    sheet.option("EXAM", o.exam, "its id").required();
+    sheet.option("--person", o.person, "three new ones for this candidate, instead of those of before");
+    sheet.callback([options] { printSheet(*options); });
 
     cli::Command releases = top.subcommand("release", "From now on an enrolled station may hold exams" + where);
     books(releases);
@@ -349,6 +391,11 @@ void addStudentsExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     begins.option("--invigilator", o.invigilator, "code of who confirms the candidate's identity").required();
     begins.option("--out", o.out, "where to put the exercise: a file that ends in .handpiece");
     begins.callback([options] { begin(*options); });
+    cli::Command opens = top.subcommand(
+        "open",
+        "Opens a sealed exam where the server is out of reach; the sheet's opening code is read from standard input");
+    socket(opens);
+    opens.callback([options] { openHere(*options); });
     cli::Command watches = top.subcommand("watch", "Notes how far the recordings are, until they are handed over");
     socket(watches);
     watches.option("RECORDING", o.recordings, "session.h5, in the order of the work").required();

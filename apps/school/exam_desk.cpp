@@ -92,6 +92,10 @@ std::string ExamClient::look(const std::string& candidate) const {
     return Line(socket_).post("/look", {{"candidate", candidate}});
 }
 
+void ExamClient::open(const std::string& code) const {
+    (void)Line(socket_).post("/open", {{"code", code}});
+}
+
 Desk ExamClient::begin(const std::string& candidate, const std::string& invigilator, const std::string& pin) const {
     return deskFrom(
         Line(socket_).post("/begin", {{"candidate", candidate}, {"invigilator", invigilator}, {"pin", pin}}));

@@ -36,6 +36,8 @@ class ExamClient {
   public:
     explicit ExamClient(std::filesystem::path socket) : socket_(std::move(socket)) {}
     [[nodiscard]] Desk desk() const;
+    /// A sealed exam by the code on an invigilator's sheet, where the server does not open it.
+    void open(const std::string& code) const;
     /// What would be begun by this code, as JSON: title, closes_ms, minutes, extra_percent, pause_minutes, locked,
     /// again, titles and instructions by language.
     [[nodiscard]] std::string look(const std::string& candidate) const;

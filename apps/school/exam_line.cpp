@@ -84,6 +84,7 @@ class ExamLine {
     void answer(const std::string& kind, const Json& asked) {
         const auto text = [&](const char* key) { return asked.value(key, ""); };
         if (kind == "look") {
+            if (const std::string opening = text("opening"); !opening.empty()) client_.open(opening);
             Json exam = Json::parse(client_.look(text("candidate")));
             exam["kind"] = "exam";
             tell(std::move(exam));

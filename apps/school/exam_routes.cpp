@@ -4,6 +4,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/school/exam/seal.h"
 #include "school/answers.h"
 #include "school/exam_arrival.h"
 #include "school/exam_pages.h"
@@ -17,6 +18,14 @@ using httplib::Response;
 namespace {
 core::Error notForExams(const school::Station& station, const char* what) {
     return core::Error("this station may hold no exams", station.name, what).as("exam-station", {station.name});
+}
+core::Error noExam(const std::string& id) {
+    return core::Error("there is no such exam", id, "ask which there are").as("books-unknown");
+}
+std::string openingOf(school::Books& books, const std::string& exam) {
+    const auto code = school::ExamBooks(books).openingCode(exam);
+    if (!code) throw noExam(exam);
+    return *code;
 }
 /// A practice station's key opens nothing of an exam.
 StationHandler released(StationHandler handler) {
@@ -64,18 +73,29 @@ std::vector<Entry> examRoutes(Service* of) {
          released([of](const Request& request, Response& response, const school::Station&) {
              auto open = of->books.take();
              const auto pack = school::ExamBooks(*open).newestPack(request.matches[1]);
-             if (!pack) throw core::Error("there is no such exam", request.matches[1].str()).as("books-unknown");
+             if (!pack) throw noExam(request.matches[1]);
              response.set_content(exam::joined({pack->text, {pack->key, pack->signature}}), "text/plain");
          })},
         {"GET", "/api/v1/exams/([0-9A-Za-z._-]{1,64})/exercise",
          released([of](const Request& request, Response& response, const school::Station&) {
              auto open = of->books.take();
              const auto pack = school::ExamBooks(*open).newestPack(request.matches[1]);
-             if (!pack) throw core::Error("there is no such exam", request.matches[1].str()).as("books-unknown");
-             const std::string file = exam::packFrom(pack->text, "the books").file;
-             const std::vector<std::byte> bytes = core::readFile(open->files().path(file));
+             if (!pack) throw noExam(request.matches[1]);
+             const exam::Pack its = exam::packFrom(pack->text, "the books");
+             std::vector<std::byte> bytes = core::readFile(open->files().path(its.file));
+             if (its.format != 1) bytes = exam::sealed(bytes, its.exam, openingOf(*open, its.exam));
              response.set_content(reinterpret_cast<const char*>(bytes.data()), bytes.size(),
                                   "application/octet-stream");
+         })},
+        {"GET", "/api/v1/exams/([0-9A-Za-z._-]{1,64})/opening",
+         released([of](const Request& request, Response& response, const school::Station&) {
+             auto open = of->books.take();
+             const auto assignment = open->assignment(request.matches[1]);
+             if (!assignment) throw noExam(request.matches[1]);
+             if (of->clock() < assignment->opens)
+                 throw core::Error("this exam has not opened", assignment->id, "ask again when it has")
+                     .as("exam-early", {exam::clockOf(assignment->opens), exam::clockOf(of->clock())});
+             response.set_content(openingOf(*open, assignment->id), "text/plain");
          })},
         {"GET", "/api/v1/exams/chain",
          released([of](const Request&, Response& response, const school::Station& station) {

@@ -26,6 +26,7 @@
 #include "school/answers.h"
 #include "school/exam_desk.h"
 #include "school/exam_station.h"
+#include "school/local_server.h"
 #include "school/wire.h"
 
 namespace handpiece::school_exam {
@@ -103,10 +104,11 @@ struct ExamService::State {
             };
         };
         http.Get("/desk", on([this](const Request&) { return toText(desk()); }));
-        http.Get("/exercise", on([this](const Request&) {
+        http.Get("/exercise", on([this](const Request& r) {
                      if (!exams.sitting())
                          throw core::Error("nobody is at an exam here", settings.folder.string(), "begin it")
                              .as("exam-none", {""});
+                     requireOwner(r, exams.sitting()->id);
                      return textOf(core::readFile(exams.sitting()->exam.exercise));
                  }));
         http.Post("/look", on([this](const Request& r) {
@@ -126,20 +128,30 @@ struct ExamService::State {
                           {"instructions", of.instructions}}
                           .dump();
                   }));
-        http.Get("/ending", on([this](const Request& r) { return exam::joined(exams.endOf(field(r, "sitting"))); }));
+        http.Get("/ending", on([this](const Request& r) {
+                     requireOwner(r, field(r, "sitting"));
+                     return exam::joined(exams.endOf(field(r, "sitting")));
+                 }));
         http.Get("/receipt", on([this](const Request& r) {
                      const std::string id = field(r, "sitting");
                      const fs::path file = settings.folder / "sessions" / id / kReceipt;
+                     requireOwner(r, id);
                      if (!school::isHex(id, 32) || !core::isThere(file)) return std::string();
                      return textOf(core::readFile(file, 1 << 20));
                  }));
+        http.Post("/open", on([this](const Request& r) {
+                      exams.open(field(r, "code"), clock(), r.remote_addr);
+                      return std::string();
+                  }));
         http.Post("/begin", on([this](const Request& r) {
                       (void)exams.begin(field(r, "candidate"), field(r, "invigilator"), field(r, "pin"),
-                                        exam::kRubricFormat, clock());
+                                        exam::kRubricFormat, clock(), r.remote_addr);
+                      keepAccount(r);
                       wake();
                       return toText(desk());
                   }));
         http.Post("/checkpoint", on([this](const Request& r) {
+                      requireOwner(r, field(r, "sitting"));
                       exams.checkpoint(field(r, "sitting"), number(r, "part"), number(r, "ticks"), field(r, "inputs"),
                                        clock());
                       return std::string();
@@ -149,6 +161,7 @@ struct ExamService::State {
         });
         http.Post("/finish", on([this](const Request& r) {
                       const std::string id = field(r, "sitting");
+                      requireOwner(r, id);
                       const std::int64_t parts = number(r, "parts");
                       if (parts < 1 || parts > 100)
                           throw core::Error("there is no recording to hand over", id, "name the session's file")
@@ -161,10 +174,33 @@ struct ExamService::State {
                       return exam::joined(entry);
                   }));
         http.Post("/give-up", on([this](const Request& r) {
-                      exams.giveUp(field(r, "sitting"), field(r, "invigilator"), field(r, "pin"), clock());
+                      requireOwner(r, field(r, "sitting"));
+                      exams.giveUp(field(r, "sitting"), field(r, "invigilator"), field(r, "pin"), clock(),
+                                   r.remote_addr);
                       wake();
                       return std::string();
                   }));
+    }
+
+    /// By which account of this machine an exam was begun: others have no hand in it.
+    fs::path accountFile(const std::string& sitting) const {
+        return settings.folder / "sessions" / sitting / "account";
+    }
+    void keepAccount(const Request& request) const {
+        const std::string& id = exams.sitting()->id;
+        (void)exams.placeFor(id, 1);  // makes its folder
+        if (const auto account = LocalServer::accountOf(request))
+            core::writeFile(accountFile(id), std::to_string(*account), {.ownerOnly = true});
+    }
+    void requireOwner(const Request& request, const std::string& sitting) const {
+        const auto account = LocalServer::accountOf(request);
+        // Of one that was begun before this was kept there is none.
+        if (!school::isHex(sitting, 32) || !core::isThere(accountFile(sitting))) return;
+        const std::string owner = textOf(core::readFile(accountFile(sitting), 100));
+        if (account && (*account == 0 || *account == ::geteuid() || std::to_string(*account) == owner)) return;
+        throw core::Error("this exam was begun by another account of this computer", sitting,
+                          "go on in that account, or call the invigilator")
+            .as("exam-account", {});
     }
 
     static std::string field(const Request& request, const char* name) {
@@ -182,6 +218,7 @@ struct ExamService::State {
         fs::path place;
         {
             const std::lock_guard lock(mutex);
+            requireOwner(request, field(request, "sitting"));
             place = exams.placeFor(field(request, "sitting"), number(request, "part"));
         }
         const fs::path coming = place.string() + "." + school::newId();
@@ -242,6 +279,7 @@ struct ExamService::State {
             try {
                 const Fetched fetched = fetchExams(settings.folder);
                 if (!fetched.problems.empty()) why = fetched.problems.front();
+                open(why);
                 (void)pushExams(
                     exams.identity(),
                     [this](std::int64_t number, std::size_t most) {
@@ -261,6 +299,15 @@ struct ExamService::State {
             trouble = why;
             news.wait_for(lock, settings.every, [this] { return ends || hasNews; });
             hasNews = false;
+        }
+    }
+    /// What cannot be opened is told, and what else there is to tell goes on.
+    void open(std::string& why) const {
+        try {
+            openExams(settings.folder, clock());
+        } catch (const core::Error& e) {
+            if (e.id() == "server-silent") throw;
+            why = e.what();
         }
     }
     std::vector<std::pair<std::string, fs::path>> withoutReceipt() {
@@ -296,7 +343,7 @@ struct ExamService::State {
     std::condition_variable news;
     bool hasNews = false;
     std::atomic<bool> ends{false};
-    httplib::Server http;
+    LocalServer http;
     std::thread teller;
 };
 

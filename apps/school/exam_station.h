@@ -25,6 +25,10 @@ struct Fetched {
 /// All exams that can still be begun. Throws core::Error "server-silent", "not-enrolled".
 Fetched fetchExams(const std::filesystem::path& folder);
 
+/// Asks for what opens those that are sealed here and whose time has come by this clock; the server's own decides.
+/// Throws core::Error "server-silent".
+void openExams(const std::filesystem::path& folder, school::Milliseconds now);
+
 struct Told {
     std::size_t entries = 0, files = 0;
 };

@@ -60,7 +60,9 @@ class ExamWindowTest : public SchoolStation {
         if (hasMore)
             school({"exam", "candidates", "--data", d, exam_, "--person", "s017", "--extra", "25", "--pause", "10",
                     "--allow", "scale-bar"});
-        pin_ = school({"exam", "invigilator", "--data", d, exam_, "t01"}).section(' ', 1);
+        school({"exam", "invigilator", "--data", d, exam_, "t01"});
+        const QStringList sheet = school({"exam", "sheet", "--data", d, exam_}).split('\n').at(0).split(' ');
+        pin_ = sheet.value(1), nextPin_ = sheet.value(2);
         school({"exam", "sign", "--data", d, exam_});
         const QString code = school({"code", "--data", d, "--exam", "exam room 1"});
         startServer(1);
@@ -149,7 +151,7 @@ class ExamWindowTest : public SchoolStation {
         return page;
     }
 
-    QString socket_, exam_, candidate_, pin_;
+    QString socket_, exam_, candidate_, pin_, nextPin_;
     std::unique_ptr<QProcess> service_;
 };
 
@@ -445,7 +447,7 @@ TEST_F(ExamWindowTest, WhatAnInvigilatorGivesUpIsOver) {
     startService();
     startWithTooth();
     beginExam();
-    school({"exam", "give-up", "--socket", socket_, "--invigilator", "t01"}, pin_.toUtf8() + "\n");
+    school({"exam", "give-up", "--socket", socket_, "--invigilator", "t01"}, nextPin_.toUtf8() + "\n");
     ASSERT_TRUE(waitFor([this] { return part<ReceiptDialog>("examReceiptDialog")->isVisible(); }));
     EXPECT_TRUE(text("examReceiptTitle").contains("given up")) << text("examReceiptTitle").toStdString();
     EXPECT_FALSE(simulator().exam());

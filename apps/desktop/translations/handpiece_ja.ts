@@ -3061,8 +3061,40 @@
         <translation>この試験で本人を確認できる監督者のコードではありません。</translation>
     </message>
     <message>
-        <source>An invigilator of this exam types their own code and their confirmation code.</source>
-        <translation>この試験の監督者が、自分のコードと確認コードを入力してください。</translation>
+        <source>An invigilator of this exam types their own code, and a code that stands beside this candidate on their sheet.</source>
+        <translation>この試験の監督者が、自分のコードと、一覧表でこの受験者の横にあるコードを入力してください。</translation>
+    </message>
+    <message>
+        <source>This confirmation code has been used.</source>
+        <translation>この確認コードは使用済みです。</translation>
+    </message>
+    <message>
+        <source>Type the next one that stands beside this candidate on the sheet.</source>
+        <translation>一覧表でこの受験者の横にある次のコードを入力してください。</translation>
+    </message>
+    <message>
+        <source>This exam&apos;s exercise is sealed still.</source>
+        <translation>この試験の課題はまだ封印されています。</translation>
+    </message>
+    <message>
+        <source>It opens by itself within a minute where the school&apos;s server can be reached. Without it an invigilator types the opening code of their sheet below.</source>
+        <translation>学校のサーバーに接続できれば、1 分以内に自動で開きます。接続できない場合は、監督者が一覧表の開封コードを下に入力してください。</translation>
+    </message>
+    <message>
+        <source>This code does not open the exam.</source>
+        <translation>このコードでは試験を開けません。</translation>
+    </message>
+    <message>
+        <source>An invigilator types the opening code of this exam&apos;s sheet.</source>
+        <translation>監督者が、この試験の一覧表にある開封コードを入力してください。</translation>
+    </message>
+    <message>
+        <source>This exam was begun in another account of this computer.</source>
+        <translation>この試験は、このコンピューターの別のアカウントで始められています。</translation>
+    </message>
+    <message>
+        <source>Go on in that account, or call the invigilator.</source>
+        <translation>そのアカウントで続けるか、監督者を呼んでください。</translation>
     </message>
     <message>
         <source>Too many wrong confirmation codes.</source>
@@ -11107,8 +11139,12 @@ lingual: %4</source>
         <translation>監督者へ</translation>
     </message>
     <message>
-        <source>Check who sits here: the slip with this code must be theirs. With your two codes you confirm it, and the time begins to run.</source>
-        <translation>座っている人が、このコードの受験票の本人であることを確かめてください。監督者の 2 つのコードで確認すると、時間が進み始めます。</translation>
+        <source>Check who sits here: the slip with this code must be theirs. With your own code and the next code beside this candidate on your sheet you confirm it, and the time begins to run.</source>
+        <translation>座っている人が、このコードの受験票の本人であることを確かめてください。監督者自身のコードと、一覧表でこの受験者の横にある次のコードで確認すると、時間が進み始めます。</translation>
+    </message>
+    <message>
+        <source>Opening code</source>
+        <translation>開封コード</translation>
     </message>
     <message>
         <source>Invigilator&apos;s code</source>

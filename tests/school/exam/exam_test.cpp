@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <map>
 #include <random>
+#include <span>
 
 #include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/core/engine_revision.h"
@@ -13,6 +15,7 @@
 #include "handpiece/model/case/exercise.h"
 #include "handpiece/school/exam/invigilation.h"
 #include "handpiece/school/exam/receipt.h"
+#include "handpiece/school/exam/seal.h"
 #include "handpiece/school/people/secret.h"
 #include "handpiece/school/store/content_files.h"
 #include "support/error_of.h"
@@ -32,17 +35,20 @@ using testing::Not;
 using testing::SizeIs;
 
 constexpr Milliseconds kOpens = 1'790'000'000'000, kHour = 3'600'000, kMinute = 60'000;
-const std::string kBytes = "an exercise's bytes", kPin = "ABC-DEF-GHJ-KMN", kCode = "123-456-789-ABC",
-                  kExtra = "QRS-TVW-XYZ-012";
+const std::string kBytes = "an exercise's bytes", kPin = "ABC-DEF-GHJ-KMN", kNextPin = "ABC-DEF-GHJ-KMP",
+                  kOpening = "000-111-222-333", kCode = "123-456-789-ABC", kExtra = "QRS-TVW-XYZ-012";
 
 /// Once: it takes its time.
-const std::string& pinHash() {
-    static const std::string hash = school::hashOfPassword(kPin);
+const std::string& hashOf(const std::string& code) {
+    static std::map<std::string, std::string> hashes;
+    std::string& hash = hashes[code];
+    if (hash.empty()) hash = school::hashOfPassword(code);
     return hash;
 }
 
-Pack packOf() {
+Pack packOf(std::int64_t format = 2) {
     Pack p;
+    p.format = format;
     p.exam = "exam-1", p.title = "Class II, first sitting", p.exercise = std::string(16, 'e');
     p.file = school::sha256(kBytes), p.bytes = static_cast<std::int64_t>(kBytes.size());
     p.rubric = std::string(16, 'a'), p.engine = core::kEngineRevision;
@@ -50,7 +56,14 @@ Pack packOf() {
     p.locked = {"undo", "guide"};
     p.candidates = {{candidateHash("exam-1", kCode), 0, 0, {}},
                     {candidateHash("exam-1", kExtra), 25, 10, {"scale-bar"}}};
-    p.invigilators = {{"t1", pinHash()}};
+    if (format == 1) {
+        p.invigilators = {{"t1", hashOf(kPin)}};
+        return p;
+    }
+    p.seal = hashOf(kOpening);
+    for (Candidate& one : p.candidates)
+        one.confirmations = {hashOf(kPin), hashOf(kNextPin)};
+    p.invigilators = {{"t1"}};
     return p;
 }
 
@@ -66,12 +79,16 @@ class AtAStation : public testing::Test {
     }
     void install(const Pack& pack) {
         const fs::path file = folder_.path() / "exercise";
-        core::writeFile(file, kBytes);
+        if (pack.format == 1)
+            core::writeFile(file, kBytes);
+        else
+            core::writeFile(file, sealed(std::as_bytes(std::span(kBytes)), pack.exam, kOpening));
         (void)installPack(folder(), signedPack(pack), file);
+        if (pack.format != 1) openExercise(folder(), pack, kOpening);
     }
     [[nodiscard]] const Sitting& begin(Invigilation& at, const std::string& code = kCode,
-                                       Milliseconds now = kOpens + kMinute) const {
-        return at.begin(code, "t1", kPin, kRubricFormat, now);
+                                       Milliseconds now = kOpens + kMinute, const std::string& pin = kPin) const {
+        return at.begin(code, "t1", pin, kRubricFormat, now);
     }
     static void handOver(Invigilation& at, const std::string& sitting, const std::string& bytes = "a session") {
         core::writeFile(at.placeFor(sitting, 1), bytes);
@@ -154,7 +171,9 @@ TEST(Packs, AreWrittenInOneWay) {
     EXPECT_EQ(id(text + "x: y\n"), "exam-damaged");
     EXPECT_EQ(id(text.substr(0, text.size() - 1)), "exam-damaged");
     EXPECT_EQ(id(""), "exam-damaged");
-    EXPECT_EQ(id(changed("pack 1", "pack 2")), "exam-newer");
+    EXPECT_EQ(id(changed("pack 2", "pack 3")), "exam-newer");
+    EXPECT_EQ(id(changed("pack 2", "pack 1")), "exam-damaged") << "what is of this format is none of before";
+    EXPECT_EQ(toText(packFrom(toText(packOf(1)), "")), toText(packOf(1))) << "those of before stay readable";
     EXPECT_EQ(id(changed("undo guide", "undo telepathy")), "exam-newer");
     EXPECT_THAT(errorOf([&] { (void)packFrom(changed("undo guide", "undo telepathy"), "pack"); }),
                 AllOf(HasSubstr("telepathy"), HasSubstr("bring this station up to date")));
@@ -164,6 +183,7 @@ TEST(Packs, AreWrittenInOneWay) {
     Pack badly = packOf();
     badly.title = "two\nlines";
     EXPECT_EQ(errorIdOf([&] { (void)toText(badly); }), "books-invalid");
+    EXPECT_EQ(packFrom(text, "").candidates.at(0).confirmations.size(), 2u);
     // Codes are not in it.
     EXPECT_THAT(text, AllOf(Not(HasSubstr(kCode)), Not(HasSubstr(kPin))));
     EXPECT_NE(candidateHash("exam-1", kCode), candidateHash("exam-2", kCode));
@@ -243,10 +263,12 @@ TEST(Packs, AreBegunInTheirTimeWithWhatOneNeeds) {
 }
 
 TEST_F(AtAStation, APackIsTakenWholeAndOnlyWithItsExercise) {
-    EXPECT_EQ(errorIdOf([&] { (void)installPack(folder(), signedPack(packOf()), {}); }), "exam-exercise-other");
+    for (const std::int64_t format : {1, 2})
+        EXPECT_EQ(errorIdOf([&] { (void)installPack(folder(), signedPack(packOf(format)), {}); }),
+                  "exam-exercise-other");
     const fs::path file = folder_.path() / "other";
     core::writeFile(file, std::string("another exercise"));
-    EXPECT_EQ(errorIdOf([&] { (void)installPack(folder(), signedPack(packOf()), file); }), "exam-exercise-other");
+    EXPECT_EQ(errorIdOf([&] { (void)installPack(folder(), signedPack(packOf(1)), file); }), "exam-exercise-other");
     Pack second = packOf();
     second.version = 2;
     install(second);
@@ -300,9 +322,95 @@ TEST_F(AtAStation, ACandidateBeginsWithAnInvigilatorAndEveryBeginningStays) {
     EXPECT_FALSE(at.sitting());
     EXPECT_EQ(errorIdOf([&] { (void)at.finish(first, {std::string(16, '9')}, kOpens); }), "exam-none");
     // Once more: it can, with an invigilator, and it shows.
-    EXPECT_EQ(begin(at, kCode, kOpens + 30 * kMinute).again, 1);
+    EXPECT_EQ(errorIdOf([&] { (void)begin(at, kCode, kOpens + 30 * kMinute); }), "exam-confirmation-used");
+    EXPECT_EQ(begin(at, kCode, kOpens + 30 * kMinute, kNextPin).again, 1);
     EXPECT_THAT(doubtsOf(packOf(), entriesOf(at, at.sitting()->id), {}),
                 ElementsAre("this candidate had begun 1 times here before"));
+}
+
+TEST_F(AtAStation, ASealedExerciseIsOpenedByItsCodeAlone) {
+    const Pack pack = packOf();
+    const fs::path file = folder_.path() / "sealed";
+    core::writeFile(file, sealed(std::as_bytes(std::span(kBytes)), "exam-1", kOpening));
+    (void)installPack(folder(), signedPack(pack), file);
+    EXPECT_TRUE(hasExercise(folder(), pack.file));
+    std::vector<std::string> problems;
+    ASSERT_THAT(packsIn(folder(), problems), SizeIs(1));
+    EXPECT_TRUE(packsIn(folder(), problems).front().isSealed);
+    // Nothing of it lies there to be read.
+    for (const auto& entry : fs::recursive_directory_iterator(folder()))
+        if (entry.is_regular_file()) {
+            const std::vector<std::byte> bytes = core::readFile(entry.path());
+            EXPECT_EQ(std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()).find(kBytes),
+                      std::string::npos)
+                << entry.path();
+        }
+    Invigilation at(folder(), kOpens);
+    EXPECT_EQ(errorIdOf([&] { (void)at.look(kCode, kRubricFormat, kOpens); }), "exam-sealed");
+    EXPECT_EQ(errorIdOf([&] { (void)begin(at); }), "exam-sealed");
+    EXPECT_EQ(errorIdOf([&] { at.open("000-111-222-334", kOpens); }), "exam-seal");
+    EXPECT_EQ(errorIdOf([&] { openExercise(folder(), pack, "000-111-222-334"); }), "exam-seal");
+    at.open("000 iii 222 333", kOpens);
+    EXPECT_EQ(at.look(kCode, kRubricFormat, kOpens).candidate.code, candidateHash("exam-1", kCode));
+    at.open(kOpening, kOpens);
+    // Guessing waits, and one account's guesses are no other's.
+    int tries = 0;
+    while (errorIdOf([&] { at.open("000-111-222-334", kOpens, "account 1001"); }) == "exam-seal")
+        ++tries;
+    EXPECT_EQ(tries, 5);
+    EXPECT_EQ(errorIdOf([&] { at.open(kOpening, kOpens, "account 1000"); }), "");
+    // Of another exam's, a bit of it changed, cut off.
+    std::vector<std::byte> bytes = sealed(std::as_bytes(std::span(kBytes)), "exam-1", kOpening);
+    EXPECT_EQ(errorIdOf([&] { (void)unsealed(bytes, "exam-2", kOpening); }), "exam-seal");
+    for (const std::size_t at2 : {std::size_t{0}, bytes.size() / 2, bytes.size() - 1}) {
+        std::vector<std::byte> changed = bytes;
+        changed[at2] ^= std::byte{1};
+        EXPECT_EQ(errorIdOf([&] { (void)unsealed(changed, "exam-1", kOpening); }), "exam-seal");
+        EXPECT_EQ(errorIdOf([&] { (void)unsealed(std::span(bytes).first(at2), "exam-1", kOpening); }), "exam-seal");
+    }
+    // What it opens to is what the pack names.
+    const std::string easier = "an easier one";
+    core::writeFile(folder() / "exercises" / (pack.file + ".sealed"),
+                    sealed(std::as_bytes(std::span(easier)), "exam-1", kOpening));
+    EXPECT_EQ(errorIdOf([&] { openExercise(folder(), pack, kOpening); }), "exam-exercise-other");
+}
+
+TEST_F(AtAStation, AConfirmationIsOfOneCandidateOnceAndStandsInTheChain) {
+    Pack pack = packOf();
+    const std::string others = "QQQ-WWW-EEE-RRR";
+    for (Candidate& one : pack.candidates)
+        if (one.code == candidateHash("exam-1", kExtra)) one.confirmations = {hashOf(others)};
+    install(pack);
+    std::string id;
+    {
+        Invigilation at(folder(), kOpens);
+        EXPECT_EQ(errorIdOf([&] { (void)begin(at, kCode, kOpens, others); }), "exam-invigilator");
+        id = begin(at, kCode, kOpens, "abc def ghj kmn").id;
+        EXPECT_EQ(errorIdOf([&] { at.giveUp(id, "t1", kPin, kOpens); }), "exam-confirmation-used");
+        at.giveUp(id, "t1", kNextPin, kOpens);
+    }
+    // Also after the service was started again.
+    Invigilation at(folder(), kOpens);
+    EXPECT_EQ(errorIdOf([&] { (void)begin(at); }), "exam-confirmation-used");
+    EXPECT_EQ(errorIdOf([&] { (void)begin(at, kCode, kOpens, kNextPin); }), "exam-confirmation-used");
+    const std::vector<Entry> entries = entriesOf(at, id);
+    EXPECT_EQ(entries.front().confirmation, kPin);
+    EXPECT_EQ(entries.at(1).kind, "given-up");
+    EXPECT_EQ(entries.at(1).confirmation, kNextPin);
+    // Entries of before have none, and are read.
+    Entry before = entries.front();
+    before.format = 1, before.confirmation.clear();
+    EXPECT_EQ(toText(entryFrom(toText(before), "")), toText(before));
+    EXPECT_EQ(toText(before).find("confirmation"), std::string::npos);
+}
+
+TEST_F(AtAStation, APackOfBeforeIsSatAsItWas) {
+    install(packOf(1));
+    Invigilation at(folder(), kOpens);
+    const std::string id = begin(at).id;
+    at.giveUp(id, "t1", kPin, kOpens + 2 * kMinute);
+    EXPECT_EQ(begin(at).again, 1) << "one code for everybody, as often as it is typed";
+    EXPECT_EQ(entriesOf(at, id).front().confirmation, "");
 }
 
 TEST_F(AtAStation, AnInvigilatorsCodeCannotBeGuessedAtSpeed) {

@@ -226,7 +226,8 @@ void signExamThere(Books& open, const fs::path& data, const std::string& id) {
     school::ExamBooks exams(open);
     exams.set(school::ExamSettings{id, 30, ""}, act);
     exams.set(school::ExamCandidate{id, "s017", exam::candidateHash(id, kCandidate), 0, 0, ""}, act);
-    exams.set(school::ExamInvigilator{id, "t1", school::hashOfPassword(kPin)}, act);
+    exams.set(school::ExamInvigilator{id, "t1", "-"}, act);
+    exams.add(school::ExamConfirmation{id, "s017", 0, school::hashOfPassword(kPin)}, act);
     (void)signExam(open, id, examKey(data), act);
 }
 
@@ -313,6 +314,7 @@ TEST_P(ExamSchoolTest, AnExamBeginsInItsTimeByTheStationsClockAndSaysWhatThatIs)
         school_exam::ExamService service({station_, at, 50ms}, [ahead] { return nowMs(ahead); });
         std::thread running([&] { service.run(); });
         const school_exam::ExamClient desk(at);
+        EXPECT_TRUE(comesTo([&] { return test::errorIdOf([&] { (void)desk.look(kCandidate); }) != "exam-sealed"; }));
         EXPECT_TRUE(comesTo([&] { return test::errorOf([&] { (void)desk.desk(); }).empty(); }));
         const auto refused = test::errorFrom([&] { (void)desk.begin(kCandidate, "t1", kPin); });
         if (ahead == 0s) {

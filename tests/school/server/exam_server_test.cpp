@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // An exam from its making to the appeal, over real HTTP, and what was tried against it: each attack that
 // docs/school-exams.md says is stopped.
+#include <sys/wait.h>
+#include <unistd.h>
+
 #include <atomic>
+#include <functional>
+#include <map>
 
 #include "handpiece/app/proving/exam_check.h"
 #include "handpiece/app/report/exam_pages.h"
@@ -36,7 +41,8 @@ using school::Act;
 using school::Books;
 using school::ExamBooks;
 
-const std::string kPin = "PPP-QQQ-RRR-SSS", kCandidate = "123-456-789-ABC", kOther = "ABC-456-789-ABC";
+const std::string kPins[] = {"PPP-QQQ-RRR-SSS", "PPP-QQQ-RRR-SST", "PPP-QQQ-RRR-SSV"}, &kPin = kPins[0];
+const std::string kCandidate = "123-456-789-ABC", kOther = "ABC-456-789-ABC";
 using school_server::kPassword;
 constexpr const char* kExamCode = "ABC-DEF-GHJ-KMR";
 
@@ -99,12 +105,17 @@ class ExamTest : public school_server::SchoolTest {
         exams.set(school::ExamSettings{"ex1", 30, "undo reset"}, act);
         exams.set(school::ExamCandidate{"ex1", "s017", exam::candidateHash("ex1", kCandidate), 25, 0, ""}, act);
         exams.set(school::ExamCandidate{"ex1", "s018", exam::candidateHash("ex1", kOther), 0, 0, ""}, act);
-        exams.set(school::ExamInvigilator{"ex1", "t1", pinHash()}, act);
+        exams.set(school::ExamInvigilator{"ex1", "t1", "-"}, act);
+        for (const char* candidate : {"s017", "s018"})
+            for (const std::string& pin : kPins)
+                exams.add(school::ExamConfirmation{"ex1", candidate, 0, hashOf(pin)}, act);
         (void)school_server::signExam(open, "ex1", school_server::examKey(data()), act);
         open.offerCode(kExamCode, "exam room, 1", 4'000'000'000'000, act, "exam");
     }
-    static const std::string& pinHash() {
-        static const std::string hash = school::hashOfPassword(kPin);
+    static const std::string& hashOf(const std::string& pin) {
+        static std::map<std::string, std::string> hashes;
+        std::string& hash = hashes[pin];
+        if (hash.empty()) hash = school::hashOfPassword(pin);
         return hash;
     }
     [[nodiscard]] fs::path service() const { return folder_.path() / "exam"; }
@@ -118,10 +129,12 @@ class ExamTest : public school_server::SchoolTest {
         enrolForExams(school.address(), kExamCode, service());
         release();
         EXPECT_THAT(fetchExams(service()).packs, SizeIs(1));
+        openExams(service(), now_);
     }
     /// From the beginning to what the server made of it.
-    std::string sit(const Service& at, const fs::path& recording, const std::string& code = kCandidate) {
-        const std::string sitting = at.client().begin(code, "t1", kPin).sitting;
+    std::string sit(const Service& at, const fs::path& recording, const std::string& code = kCandidate,
+                    const std::string& pin = kPin) {
+        const std::string sitting = at.client().begin(code, "t1", pin).sitting;
         (void)at.client().finish(sitting, {recording});
         return sitting;
     }
@@ -315,12 +328,18 @@ TEST_F(ExamTest, BeginningAgainAndAtAnotherStationShow) {
     enrolForExams(school.address(), "ABC-DEF-GHJ-KMT", second);
     release();
     EXPECT_THAT(fetchExams(second).packs, SizeIs(1));
+    openExams(second, now_);
     const Service here(service()), there(second);
-    const std::string first = sit(here, session()), again = sit(here, session()), elsewhere = sit(there, session());
+    const std::string first = sit(here, session()), again = sit(here, session(), kCandidate, kPins[1]);
+    ASSERT_TRUE(soon([&] { return hasArrived(first) && hasArrived(again); }));
+    // A code that was typed here is typed there: that station cannot know.
+    const std::string elsewhere = sit(there, session());
     ASSERT_TRUE(soon([&] { return hasArrived(first) && hasArrived(again) && hasArrived(elsewhere); }));
     EXPECT_THAT(doubts(first), ElementsAre("this candidate has begun 1 times at other stations, too"));
     EXPECT_THAT(doubts(again), testing::Contains("this candidate had begun 1 times here before"));
-    EXPECT_THAT(doubts(elsewhere), ElementsAre("this candidate has begun 2 times at other stations, too"));
+    EXPECT_THAT(doubts(elsewhere),
+                ElementsAre("the code that confirmed the identity had been used for another beginning",
+                            "this candidate has begun 2 times at other stations, too"));
     // Another person's session is not this one's work.
     const std::string borrowed = sit(here, session(), kOther);
     ASSERT_TRUE(soon([&] { return hasArrived(borrowed); }));
@@ -420,6 +439,7 @@ TEST_F(ExamTest, APracticeStationsKeyOpensNothingOfAnExam) {
         look(http.Get("/api/v1/exams", headers));
         look(http.Get("/api/v1/exams/ex1/pack", headers));
         look(http.Get("/api/v1/exams/ex1/exercise", headers));
+        look(http.Get("/api/v1/exams/ex1/opening", headers));
         look(http.Get("/api/v1/exams/chain", headers));
         look(http.Post("/api/v1/exams/chain", headers, exam::joined({text, exam::signatureOf(text, key)}),
                        "text/plain"));
@@ -428,17 +448,165 @@ TEST_F(ExamTest, APracticeStationsKeyOpensNothingOfAnExam) {
     };
     const httplib::Headers its{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + own.key}};
     EXPECT_EQ(http.Post("/api/v1/exams/station", its, key.open, "text/plain")->status, 403);
-    EXPECT_EQ(refused(own.key), 6);
+    EXPECT_EQ(refused(own.key), 7);
     // Nor does a code for exams by itself, until an administrator has looked at the station.
     enrolForExams(school.address(), kExamCode, service());
     const std::string stations = exam::stationIn(service()).key;
-    EXPECT_EQ(refused(stations), 6);
+    EXPECT_EQ(refused(stations), 7);
     EXPECT_EQ(errorIdOf([&] { (void)fetchExams(service()); }), "exam-station");
     Books open(data());
     EXPECT_EQ(errorIdOf([&] { open.releaseForExams(own.station, {"server", 1}); }), "books-unknown");
     release();
     EXPECT_EQ(refused(stations), 0);
     EXPECT_THAT(fetchExams(service()).packs, SizeIs(1));
+}
+
+// With an exam station's key, wherever it came from, a whole exam was told: "identity confirmed".
+TEST_F(ExamTest, WhoHasNoInvigilatorsCodeTellsOfNoBeginning) {
+    School school(data());
+    setUpStation(school);
+    const exam::StationIdentity station = exam::stationIn(service());
+    const exam::SigningKey key = exam::keptSigningKey(service() / "station.key");
+    Books open(data());
+    exam::ChainEnd end{0, exam::kNoEntry};
+    const auto tell = [&](exam::Entry e) {
+        e.station = station.station, e.number = end.number + 1, e.previous = end.hash, e.at = now_;
+        const std::string text = exam::toText(e);
+        (void)school_server::takeEntry(open, station.station, exam::joined({text, exam::signatureOf(text, key)}), now_);
+        end = {e.number, exam::hashOfEntry(text)};
+    };
+    exam::Entry started, begun;
+    started.kind = "started";
+    tell(started);
+    begun.kind = "begun", begun.sitting = school::newId(), begun.exam = "ex1", begun.invigilator = "t1";
+    begun.pack = ExamBooks(open).newestPack("ex1")->hash, begun.candidate = exam::candidateHash("ex1", kCandidate);
+    for (const std::string& code : {std::string(), std::string("PPP-QQQ-RRR-SSW"), hashOf(kPin).substr(0, 20)}) {
+        begun.confirmation = code.find('$') == code.npos ? code : "x";
+        EXPECT_EQ(errorIdOf([&] { tell(begun); }), "exam-invigilator") << code;
+    }
+    EXPECT_FALSE(ExamBooks(open).sitting(begun.sitting));
+    begun.confirmation = kPins[2];
+    tell(begun);
+    EXPECT_EQ(ExamBooks(open).sitting(begun.sitting)->confirmation, 3);
+    // A pack of before the sheets says on the station's word alone, which shows.
+    const exam::Pack newest = exam::packFrom(ExamBooks(open).newestPack("ex1")->text, "");
+    exam::Pack before = newest;
+    before.format = 1, before.version = newest.version + 1, before.invigilators = {{"t1", hashOf(kPin)}};
+    school::ExamPack kept;
+    kept.exam = "ex1", kept.version = before.version, kept.text = exam::toText(before);
+    kept.hash = school::sha256(kept.text), kept.made = now_;
+    const exam::Signature signature = exam::signatureOf(kept.text, school_server::examKey(data()));
+    kept.key = signature.key, kept.signature = signature.value;
+    (void)ExamBooks(open).add(kept, {"server", 1});
+    exam::Entry given = begun;
+    given.kind = "given-up", given.confirmation = "PPP-QQQ-RRR-SSW";
+    EXPECT_EQ(errorIdOf([&] { tell(given); }), "exam-invigilator");
+    given.confirmation = kPins[1];
+    tell(given);
+    begun.pack = kept.hash, begun.sitting = school::newId(), begun.format = 1, begun.confirmation.clear();
+    tell(begun);
+    EXPECT_THAT(doubts(begun.sitting), testing::Contains(HasSubstr("is its station's word")));
+}
+
+TEST_F(ExamTest, ItsExerciseIsSealedUntilItOpens) {
+    {
+        Books open(data());
+        const Act act{"server", 1};
+        const std::string exercise = rubric::hashText(tasks::contentHash(school_server::blockTask()));
+        open.add(school::Assignment{"ex2", "c1", exercise, open.pack(exercise)->rubric, "Tomorrow's", "exam", "",
+                                    now_ + 86'400'000, now_ + 90'000'000},
+                 act);
+        ExamBooks exams(open);
+        exams.set(school::ExamSettings{"ex2", 30, ""}, act);
+        exams.set(school::ExamCandidate{"ex2", "s017", exam::candidateHash("ex2", kCandidate), 0, 0, ""}, act);
+        exams.set(school::ExamInvigilator{"ex2", "t1", "-"}, act);
+        EXPECT_EQ(errorIdOf([&] { (void)school_server::signExam(open, "ex2", school_server::examKey(data()), act); }),
+                  "exam-empty")
+            << "without the sheet nobody could begin";
+        exams.add(school::ExamConfirmation{"ex2", "s017", 0, hashOf(kPin)}, act);
+        (void)school_server::signExam(open, "ex2", school_server::examKey(data()), act);
+        const auto again = school_server::signExam(open, "ex2", school_server::examKey(data()), act);
+        EXPECT_EQ(again.version, 1) << "the same again is the same pack";
+    }
+    School school(data());
+    enrolForExams(school.address(), kExamCode, service());
+    release();
+    EXPECT_THAT(fetchExams(service()).packs, SizeIs(2));
+    openExams(service(), now_ + 86'400'000);  // by a clock that is a day ahead
+    std::vector<std::string> problems;
+    for (const exam::Installed& one : exam::packsIn(service(), problems))
+        EXPECT_EQ(one.isSealed, one.pack.exam == "ex2") << "the server's clock decides";
+    EXPECT_THAT(problems, IsEmpty());
+    httplib::Client http(school.address());
+    const httplib::Headers its{{"Handpiece-Protocol", "1"},
+                               {"Authorization", "Bearer " + exam::stationIn(service()).key}};
+    EXPECT_NE(http.Get("/api/v1/exams/ex2/opening", its)->status, 200);
+    EXPECT_EQ(http.Get("/api/v1/exams/ex1/opening", its)->status, 200);
+    const std::string bytes = http.Get("/api/v1/exams/ex2/exercise", its)->body;
+    EXPECT_EQ(bytes.rfind("handpiece sealed exercise 1\n", 0), 0u);
+    // Where the network is not, by the sheet.
+    std::string code;
+    {
+        Books open(data());
+        code = *ExamBooks(open).openingCode("ex2");
+    }
+    const Service at(service());
+    EXPECT_EQ(errorIdOf([&] { at.client().open("AAA-AAA-AAA-AAA"); }), "exam-seal");
+    at.client().open(code);
+    for (const exam::Installed& one : exam::packsIn(service(), problems))
+        EXPECT_FALSE(one.isSealed);
+}
+
+// Any account of a station may speak to its service's socket.
+TEST_F(ExamTest, AnotherAccountOfTheStationHasNoHandInAnExam) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can ask as another account";
+    School school(data());
+    setUpStation(school);
+    const Service at(service());
+    fs::permissions(folder_.path(), fs::perms::all);
+    // The child is one account, this process another: the exam is begun by 4001, and 4002 comes to it.
+    const auto as = [&](uid_t account, const std::function<std::string()>& what) {
+        int lines[2];
+        EXPECT_EQ(::pipe(lines), 0);
+        const pid_t child = ::fork();
+        if (child == 0) {
+            ::close(lines[0]);
+            std::string said = "cannot be that account";
+            if (::setgid(account) == 0 && ::setuid(account) == 0) said = what();
+            (void)!::write(lines[1], said.data(), said.size());
+            ::_exit(0);
+        }
+        ::close(lines[1]);
+        std::string said;
+        char some[256];
+        for (ssize_t n = 0; (n = ::read(lines[0], some, sizeof some)) > 0;)
+            said.append(some, static_cast<std::size_t>(n));
+        ::close(lines[0]);
+        ::waitpid(child, nullptr, 0);
+        return said;
+    };
+    const ExamClient client = at.client();
+    const std::string sitting = as(4001, [&] { return client.begin(kCandidate, "t1", kPin).sitting; });
+    ASSERT_EQ(sitting.size(), 32u) << sitting;
+    const fs::path copy = folder_.path() / "copy.h5";
+    fs::copy_file(session(), copy);
+    fs::permissions(copy, fs::perms::all);
+    const auto id = [](const auto& what) { return errorIdOf(what); };
+    EXPECT_EQ(as(4002, [&] { return id([&] { client.checkpoint(sitting, 1, 5, std::string(64, '1')); }); }),
+              "exam-account");
+    EXPECT_EQ(as(4002, [&] { return id([&] { (void)client.finish(sitting, {copy}); }); }), "exam-account");
+    EXPECT_EQ(as(4002, [&] { return id([&] { client.keepExercise(folder_.path() / "x.handpiece"); }); }),
+              "exam-account");
+    EXPECT_EQ(as(4002,
+                 [&] {
+                     std::string last;
+                     for (int i = 0; i < 8; ++i)
+                         last = id([&] { client.giveUp(sitting, "t1", "AAA-AAA-AAA-AAA"); });
+                     return last;
+                 }),
+              "exam-account");
+    EXPECT_EQ(as(4001, [&] { return id([&] { client.giveUp(sitting, "t1", kPins[1]); }); }), "")
+        << "nobody else's guesses make the invigilator wait";
 }
 
 TEST_F(ExamTest, AServiceThatIsKilledLosesNothing) {

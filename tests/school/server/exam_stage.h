@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "handpiece/school/people/secret.h"
 #include "school/exam_arrival.h"
 #include "school/server/school_fixture.h"
 
@@ -28,7 +29,10 @@ inline std::vector<std::string> holdExam(Books& books, const fs::path& data,
             exams.set(school::ExamCandidate{"ex1", one.person, exam::candidateHash("ex1", one.person),
                                             one.person == "s017" ? 25 : 0, 0, one.person == "s017" ? "guide" : ""},
                       act);
-    exams.set(school::ExamInvigilator{"ex1", "t1", "a-hash"}, act);
+    exams.set(school::ExamInvigilator{"ex1", "t1", "-"}, act);
+    const std::string confirmation = "PPP-QQQ-RRR-SSS", hash = school::hashOfPassword(confirmation);
+    for (const school::ExamCandidate& one : exams.candidates("ex1"))
+        exams.add(school::ExamConfirmation{"ex1", one.person, 0, hash}, act);
     const school::ExamPack pack = signExam(books, "ex1", examKey(data), act);
     const std::string station(32, 'e');
     books.offerCode("exam-room-1-code", "exam room, 1", now + 1'000'000, act, "exam");
@@ -48,14 +52,15 @@ inline std::vector<std::string> holdExam(Books& books, const fs::path& data,
         exam::Entry begun;
         begun.kind = "begun", begun.at = now - 600'000, begun.sitting = school::newId(), begun.exam = "ex1";
         begun.pack = pack.hash, begun.candidate = exam::candidateHash("ex1", person), begun.invigilator = "t1";
+        begun.confirmation = confirmation;
         tell(begun);
         exam::Entry finished;
         finished.kind = "finished", finished.at = now - 60'000, finished.sitting = begun.sitting;
         const std::vector<std::byte> bytes = core::readFile(file);
-        const std::string hash = school::sha256Of(file);
-        finished.files = {{hash, assessment::workHash(file), static_cast<std::int64_t>(bytes.size())}};
+        const std::string sha256 = school::sha256Of(file);
+        finished.files = {{sha256, assessment::workHash(file), static_cast<std::int64_t>(bytes.size())}};
         tell(finished);
-        const school::Upload upload{station, hash, bytes.size()};
+        const school::Upload upload{station, sha256, bytes.size()};
         if (const std::uint64_t have = books.received(upload, now); have < bytes.size())
             (void)books.append(upload, have, std::span(bytes).subspan(have), now);
         sittings.push_back(begun.sitting);

@@ -67,6 +67,14 @@ ExamDialog::ExamDialog(QWidget* parent) : QDialog(parent) {
     auto* firstForm = new QFormLayout;
     firstForm->addRow(tr("Candidate's code"), candidate_);
     firstColumn->addLayout(firstForm);
+    // Only where an exam turns out to be sealed still: with the network it opens by itself.
+    openingRow_ = new QWidget;
+    auto* openingForm = new QFormLayout(openingRow_);
+    openingForm->setContentsMargins(0, 0, 0, 0);
+    opening_ = field("examOpening", tr("Opening code"));
+    opening_->setEchoMode(QLineEdit::Password);
+    openingForm->addRow(tr("Opening code"), opening_);
+    firstColumn->addWidget(openingRow_);
     firstColumn->addStretch();
     pages_->addWidget(first);
 
@@ -92,8 +100,8 @@ ExamDialog::ExamDialog(QWidget* parent) : QDialog(parent) {
     secondColumn->addWidget(again_);
     secondColumn->addWidget(heading(tr("For the invigilator"), second));
     secondColumn->addWidget(
-        note(tr("Check who sits here: the slip with this code must be theirs. With your two codes you confirm it, and "
-                "the time begins to run."),
+        note(tr("Check who sits here: the slip with this code must be theirs. With your own code and the next code "
+                "beside this candidate on your sheet you confirm it, and the time begins to run."),
              second, "examSecondNote"));
     auto* form = new QFormLayout;
     invigilator_ = field("examInvigilator", tr("Invigilator's code"));
@@ -122,14 +130,15 @@ ExamDialog::ExamDialog(QWidget* parent) : QDialog(parent) {
     connect(next_, &QPushButton::clicked, this, &ExamDialog::goOn);
     connect(back_, &QPushButton::clicked, this, &ExamDialog::goBack);
     connect(cancel, &QPushButton::clicked, this, &QDialog::reject);
-    for (QLineEdit* line : {candidate_, invigilator_, pin_})
+    for (QLineEdit* line : {candidate_, opening_, invigilator_, pin_})
         connect(line, &QLineEdit::textChanged, this, [this] { setBusy(false); });
     restart();
 }
 
 void ExamDialog::restart() {
-    for (QLineEdit* line : {candidate_, invigilator_, pin_})
+    for (QLineEdit* line : {candidate_, opening_, invigilator_, pin_})
         line->clear();
+    openingRow_->hide();
     goBack();
 }
 
@@ -157,7 +166,7 @@ void ExamDialog::goOn() {
     setBusy(true);
     const QString candidate = candidate_->text().trimmed();
     if (pages_->currentIndex() == 0)
-        emit lookRequested(candidate);
+        emit lookRequested(candidate, opening_->text().trimmed());
     else
         emit beginRequested(candidate, invigilator_->text().trimmed(), pin_->text().trimmed());
 }
@@ -178,6 +187,8 @@ void ExamDialog::showOffer(const ExamOffer& offer) {
                                       : tr("Locked: %1").arg(locked.join(QStringLiteral("; "))));
     again_->setText(tr("With this code an exam was begun here before: %1 times. This shows.").arg(offer.again));
     again_->setVisible(offer.again > 0);
+    opening_->clear();
+    openingRow_->hide();
     pages_->setCurrentIndex(1);
     invigilator_->setFocus();
     setBusy(false);
@@ -191,8 +202,9 @@ void ExamDialog::showProblem(const Problem& problem) {
     words.removeAll(QString());
     problem_->setText(words.join(QLatin1Char(' ')));
     pin_->clear();
+    if (problem.id == QLatin1String("exam-sealed")) openingRow_->show();
     setBusy(false);
-    (pages_->currentIndex() == 0 ? candidate_ : pin_)->setFocus();
+    (pages_->currentIndex() != 0 ? pin_ : openingRow_->isHidden() ? candidate_ : opening_)->setFocus();
 }
 
 ReceiptDialog::ReceiptDialog(QWidget* parent) : QDialog(parent) {

@@ -27,7 +27,8 @@ class ExamDialog : public QDialog {
     void showProblem(const Problem& problem);
 
   signals:
-    void lookRequested(const QString& candidate);
+    /// `opening`: typed where the exam is sealed still; else empty.
+    void lookRequested(const QString& candidate, const QString& opening);
     void beginRequested(const QString& candidate, const QString& invigilator, const QString& pin);
 
   private:
@@ -36,7 +37,8 @@ class ExamDialog : public QDialog {
     void goBack();
 
     QStackedWidget* pages_;
-    QLineEdit *candidate_, *invigilator_, *pin_;
+    QLineEdit *candidate_, *opening_, *invigilator_, *pin_;
+    QWidget* openingRow_;
     QLabel *title_, *what_, *time_, *locked_, *again_, *problem_;
     QPushButton *back_, *next_;
 };

@@ -114,8 +114,8 @@ void ExamLink::send(const QJsonObject& line) {
     if (isRunning()) process_.write(QJsonDocument(line).toJson(QJsonDocument::Compact) + '\n');
 }
 
-void ExamLink::look(const QString& candidate) {
-    send({{"kind", "look"}, {"candidate", candidate}});
+void ExamLink::look(const QString& candidate, const QString& opening) {
+    send({{"kind", "look"}, {"candidate", candidate}, {"opening", opening}});
 }
 
 void ExamLink::beginExam(const QString& candidate, const QString& invigilator, const QString& pin) {

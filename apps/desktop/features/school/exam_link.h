@@ -58,7 +58,7 @@ class ExamLink : public QObject {
     [[nodiscard]] bool isRunning() const { return process_.state() != QProcess::NotRunning; }
     [[nodiscard]] qint64 processId() const { return process_.processId(); }
 
-    void look(const QString& candidate);
+    void look(const QString& candidate, const QString& opening);
     void beginExam(const QString& candidate, const QString& invigilator, const QString& pin);
     void fetchExercise(const QString& file);
     /// Says how far they are from now on, until the exam ends.

@@ -11,7 +11,7 @@
 namespace handpiece::exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam record 1";
+constexpr std::string_view kKind = "handpiece exam record 2", kFirstKind = "handpiece exam record 1";
 constexpr std::int64_t kMost = std::int64_t{1} << 53;
 /// A checkpoint is due every half minute.
 constexpr Milliseconds kSilentMs = 120'000, kGraceMs = 120'000, kClockMs = 120'000;
@@ -24,7 +24,10 @@ std::string secondsOf(Milliseconds ms) {
 }  // namespace
 
 std::string toText(const Entry& e) {
-    LineWriter lines(kKind);
+    LineWriter lines(e.format == 1 ? kFirstKind : kKind);
+    const auto confirmed = [&] {
+        if (e.format != 1) lines.add("confirmation", e.confirmation.empty() ? "-" : e.confirmation);
+    };
     lines.add("station", e.station).add("number", e.number).add("previous", e.previous).add("at_ms", e.at);
     lines.add("kind", e.kind);
     if (e.kind != "started") lines.add("sitting", e.sitting);
@@ -34,8 +37,12 @@ std::string toText(const Entry& e) {
             .add("candidate", e.candidate)
             .add("invigilator", e.invigilator)
             .add("again", e.again);
+    if (e.kind == "begun") confirmed();
     if (e.kind == "checkpoint") lines.add("part", e.part).add("ticks", e.ticks).add("inputs", e.inputs);
-    if (e.kind == "given-up") lines.add("invigilator", e.invigilator);
+    if (e.kind == "given-up") {
+        lines.add("invigilator", e.invigilator);
+        confirmed();
+    }
     if (e.kind == "finished")
         for (const HandedOver& one : e.files)
             lines.add("file", fmt::format("{} {} {}", one.file, one.work, one.bytes));
@@ -43,8 +50,14 @@ std::string toText(const Entry& e) {
 }
 
 Entry entryFrom(std::string_view text, const std::string& where) {
-    LineReader lines(text, kKind, where);
+    const bool isFirst = isOfKind(text, kFirstKind);
+    LineReader lines(text, isFirst ? kFirstKind : kKind, where);
     Entry e;
+    e.format = isFirst ? 1 : 2;
+    const auto readConfirmation = [&] {
+        if (isFirst) return;
+        if (e.confirmation = lines.code("confirmation"); e.confirmation == "-") e.confirmation.clear();
+    };
     e.station = lines.hex("station", 32), e.number = lines.whole("number", 1, kMost);
     e.previous = lines.hex("previous", 64), e.at = lines.whole("at_ms", 0, kMost);
     e.kind = lines.text("kind", 20);
@@ -52,11 +65,13 @@ Entry entryFrom(std::string_view text, const std::string& where) {
     if (e.kind == "begun") {
         e.exam = lines.code("exam"), e.pack = lines.hex("pack", 64), e.candidate = lines.hex("candidate", 64);
         e.invigilator = lines.code("invigilator"), e.again = lines.whole("again", 0, kMost);
+        readConfirmation();
     } else if (e.kind == "checkpoint") {
         e.part = lines.whole("part", 1, static_cast<std::int64_t>(kMostFiles));
         e.ticks = lines.whole("ticks", 0, kMost), e.inputs = lines.hex("inputs", 64);
     } else if (e.kind == "given-up") {
         e.invigilator = lines.code("invigilator");
+        readConfirmation();
     } else if (e.kind == "finished") {
         while (lines.isNext("file")) {
             const std::vector<std::string> parts = partsOf(lines.text("file", 200), ' ');

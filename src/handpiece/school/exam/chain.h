@@ -22,6 +22,7 @@ struct HandedOver {
 };
 
 struct Entry {
+    std::int64_t format = 2;  ///< 1: of before, without a confirmation
     std::string station{};    ///< 32 digits
     std::int64_t number = 0;  ///< from 1, without gaps
     std::string previous{};   ///< hash of the entry before; zeros for the first
@@ -33,6 +34,9 @@ struct Entry {
     std::string candidate{};     ///< candidateHash()
     std::string invigilator{};   ///< who confirmed the candidate's identity
     std::int64_t again = 0;      ///< how often this candidate had begun here before
+    /// The code that they typed, of "given-up" too: it opens nothing else, and shows the server that they were there.
+    /// Empty: by a pack of format 1.
+    std::string confirmation{};
     // Of "checkpoint": the recording as far as it had come.
     std::int64_t part = 0;   ///< which of the sitting's recordings, from 1
     std::int64_t ticks = 0;  ///< of it

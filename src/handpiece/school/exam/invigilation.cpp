@@ -11,6 +11,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/exam/lines.h"
+#include "handpiece/school/exam/seal.h"
 #include "handpiece/school/people/secret.h"
 #include "handpiece/school/store/content_files.h"
 
@@ -32,6 +33,9 @@ fs::path packFolder(const fs::path& folder, const std::string& exam) {
 }
 fs::path exerciseFile(const fs::path& folder, const std::string& sha256) {
     return folder / "exercises" / (sha256 + ".handpiece");
+}
+fs::path sealedFile(const fs::path& folder, const std::string& sha256) {
+    return folder / "exercises" / (sha256 + ".sealed");
 }
 fs::path entryFile(const fs::path& folder, std::int64_t number) {
     return folder / "chain" / fmt::format("{:010}.txt", number);
@@ -62,7 +66,17 @@ void keepStation(const StationIdentity& s, const fs::path& folder) {
 }
 
 bool hasExercise(const fs::path& folder, const std::string& sha256) {
-    return school::isHex(sha256, 64) && core::isThere(exerciseFile(folder, sha256));
+    return school::isHex(sha256, 64) &&
+           (core::isThere(exerciseFile(folder, sha256)) || core::isThere(sealedFile(folder, sha256)));
+}
+
+void openExercise(const fs::path& folder, const Pack& pack, const std::string& typedCode) {
+    const std::vector<std::byte> bytes = unsealed(core::readFile(sealedFile(folder, pack.file)), pack.exam, typedCode);
+    if (school::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) != pack.file)
+        throw core::Error("the exam's exercise is not the one that its pack names", pack.exam,
+                          "fetch it again from the school's server")
+            .as("exam-exercise-other");
+    core::writeFile(exerciseFile(folder, pack.file), bytes, {.ownerOnly = true});
 }
 
 Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::path& exercise) {
@@ -78,12 +92,14 @@ Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::pat
                 .as("exam-older", {std::to_string(pack.version), std::to_string(there.version)});
     }
     if (!exercise.empty()) {
-        if (const std::string hash = school::sha256Of(exercise); hash != pack.file)
+        const bool isSealed = pack.format != 1;
+        // What is sealed is looked at when it is opened.
+        if (const std::string hash = isSealed ? pack.file : school::sha256Of(exercise); hash != pack.file)
             throw core::Error("the exam's exercise is not the one that its pack names", exercise.string(),
                               "fetch it again from the school's server")
                 .as("exam-exercise-other", {hash, pack.file});
         core::prepareOutputFolder(folder / "exercises", true);
-        fs::rename(exercise, exerciseFile(folder, pack.file));
+        fs::rename(exercise, isSealed ? sealedFile(folder, pack.file) : exerciseFile(folder, pack.file));
     } else if (!hasExercise(folder, pack.file)) {
         throw core::Error("the exam's exercise is not here", pack.exam, "fetch it from the school's server")
             .as("exam-exercise-other", {"", pack.file});
@@ -111,8 +127,10 @@ std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>&
             one.text.signature = signatureFrom(textOf(in / "pack.sig", 4096), (in / "pack.sig").string());
             one.pack = openedPack(one.text, station.serverKey, (in / "pack.txt").string());
             one.exercise = exerciseFile(folder, one.pack.file);
+            one.isSealed = one.pack.format != 1 && !core::isThere(one.exercise) &&
+                           core::isThere(sealedFile(folder, one.pack.file));
             // What was written there since is no exam's exercise.
-            if (!core::isThere(one.exercise) || school::sha256Of(one.exercise) != one.pack.file)
+            if (!one.isSealed && (!core::isThere(one.exercise) || school::sha256Of(one.exercise) != one.pack.file))
                 throw core::Error("the exam's exercise is not the one that its pack names", one.exercise.string(),
                                   "fetch it again from the school's server")
                     .as("exam-exercise-other");
@@ -155,6 +173,7 @@ Signed Invigilation::add(Entry entry) {
 void Invigilation::follow(const Entry& e) {
     if (e.kind == "begun") {
         begun_.emplace_back(e.exam, e.candidate);
+        if (!e.confirmation.empty()) spent_.insert(e.confirmation);
         Sitting sitting;
         sitting.id = e.sitting, sitting.began = e.at, sitting.again = e.again;
         std::vector<std::string> problems;
@@ -167,24 +186,59 @@ void Invigilation::follow(const Entry& e) {
             }
         sitting_ = std::move(sitting);
     } else if (e.kind == "finished" || e.kind == "given-up") {
+        if (!e.confirmation.empty()) spent_.insert(e.confirmation);
         sitting_.reset();
     }
 }
 
-void Invigilation::requireInvigilator(const Pack& pack, const std::string& person, const std::string& pin,
-                                      Milliseconds now) {
-    if (const std::int64_t wait = guesses_.waitMs(person, now); wait > 0)
-        throw core::Error(fmt::format("too many wrong confirmation codes: wait {} s", (wait + 999) / 1000), person,
+void Invigilation::requirePatience(const std::string& who, Milliseconds now) {
+    if (const std::int64_t wait = guesses_.waitMs(who, now); wait > 0)
+        throw core::Error(fmt::format("too many wrong confirmation codes: wait {} s", (wait + 999) / 1000), who,
                           "then try again")
             .as("exam-wait", {std::to_string((wait + 999) / 1000)});
-    guesses_.failed(person, now);
+    guesses_.failed(who, now);
+}
+
+std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& candidate, const std::string& person,
+                                             const std::string& code, Milliseconds now, const std::string& from) {
+    const std::string guesser = person + from;
+    requirePatience(guesser, now);
+    const std::string typed = school::typedStationCode(code);
     const auto found = std::find_if(pack.invigilators.begin(), pack.invigilators.end(),
                                     [&](const Invigilator& one) { return one.person == person; });
-    if (found == pack.invigilators.end() || !school::isPassword(found->pin, school::typedStationCode(pin)))
-        throw core::Error("nobody who may confirm a candidate's identity at this exam has this code", person,
-                          "an invigilator of this exam types their own code and confirmation code")
+    const auto is = [&](const std::string& hash) { return school::isPassword(hash, typed); };
+    const bool isOfPack =
+        found != pack.invigilators.end() &&
+        (pack.format == 1 ? is(found->pin)
+                          : std::any_of(candidate.confirmations.begin(), candidate.confirmations.end(), is));
+    if (!isOfPack)
+        throw core::Error("nobody who may confirm this candidate's identity has this code", person,
+                          "an invigilator of this exam types their own code, and a confirmation code that stands "
+                          "beside this candidate on their sheet")
             .as("exam-invigilator", {person});
-    guesses_.succeeded(person);
+    guesses_.succeeded(guesser);
+    if (pack.format == 1) return {};
+    if (spent_.contains(typed))
+        throw core::Error("this confirmation code has been used", person,
+                          "type the next one that stands beside this candidate on the sheet")
+            .as("exam-confirmation-used");
+    return typed;
+}
+
+void Invigilation::open(const std::string& typedCode, Milliseconds now, const std::string& from) {
+    const std::string guesser = "the exercise's seal" + from;
+    requirePatience(guesser, now);
+    const std::string typed = school::typedStationCode(typedCode);
+    std::vector<std::string> problems;
+    for (const Installed& one : packsIn(folder_, problems))
+        if (one.pack.format != 1 && school::isPassword(one.pack.seal, typed)) {
+            guesses_.succeeded(guesser);
+            if (one.isSealed) openExercise(folder_, one.pack, typed);
+            return;
+        }
+    throw core::Error("this code opens none of the exams at this station", folder_.string(),
+                      "type it as it stands on the invigilator's sheet of this exam")
+        .as("exam-seal");
 }
 
 Sitting Invigilation::look(const std::string& candidateCode, std::int64_t rubricFormat, Milliseconds now) const {
@@ -213,16 +267,22 @@ Sitting Invigilation::look(const std::string& candidateCode, std::int64_t rubric
     const Pack& pack = sitting.exam.pack;
     requireFitting(pack, rubricFormat, core::kEngineRevision);
     requireOpen(pack, now);
+    if (sitting.exam.isSealed)
+        throw core::Error("this exam's exercise is sealed still", pack.exam,
+                          "it opens by itself where the school's server can be reached; else by the opening code on "
+                          "the invigilator's sheet")
+            .as("exam-sealed");
     sitting.began = now, sitting.deadline = deadlineOf(pack, sitting.candidate, now);
     sitting.again = std::count(begun_.begin(), begun_.end(), std::pair(pack.exam, sitting.candidate.code));
     return sitting;
 }
 
 const Sitting& Invigilation::begin(const std::string& candidateCode, const std::string& invigilator,
-                                   const std::string& pin, std::int64_t rubricFormat, Milliseconds now) {
+                                   const std::string& code, std::int64_t rubricFormat, Milliseconds now,
+                                   const std::string& from) {
     const Sitting sitting = look(candidateCode, rubricFormat, now);
-    requireInvigilator(sitting.exam.pack, invigilator, pin, now);
     Entry e;
+    e.confirmation = requireInvigilator(sitting.exam.pack, sitting.candidate, invigilator, code, now, from);
     e.at = now, e.kind = "begun", e.sitting = school::newId();
     e.exam = sitting.exam.pack.exam, e.pack = school::sha256(sitting.exam.text.text);
     e.candidate = sitting.candidate.code, e.invigilator = invigilator, e.again = sitting.again;
@@ -276,10 +336,10 @@ Signed Invigilation::finish(const std::string& id, const std::vector<std::string
     return add(std::move(e));
 }
 
-void Invigilation::giveUp(const std::string& id, const std::string& invigilator, const std::string& pin,
-                          Milliseconds now) {
-    requireInvigilator(current(id).exam.pack, invigilator, pin, now);
+void Invigilation::giveUp(const std::string& id, const std::string& invigilator, const std::string& code,
+                          Milliseconds now, const std::string& from) {
     Entry e;
+    e.confirmation = requireInvigilator(current(id).exam.pack, current(id).candidate, invigilator, code, now, from);
     e.at = now, e.kind = "given-up", e.sitting = id, e.invigilator = invigilator;
     (void)add(std::move(e));
 }

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,11 +32,16 @@ Pack installPack(const std::filesystem::path& folder, const Signed& pack, const 
 struct Installed {
     Pack pack;
     Signed text;
-    std::filesystem::path exercise;
+    std::filesystem::path exercise;  ///< where it is, or will be once it is opened
+    bool isSealed = false;
 };
 /// Those that hold; the others' reasons go into `problems`.
 [[nodiscard]] std::vector<Installed> packsIn(const std::filesystem::path& folder, std::vector<std::string>& problems);
+/// Sealed or not.
 [[nodiscard]] bool hasExercise(const std::filesystem::path& folder, const std::string& sha256);
+
+/// Opens the exercise of a pack that is here. Throws core::Error "exam-seal".
+void openExercise(const std::filesystem::path& folder, const Pack& pack, const std::string& typedCode);
 
 /// Somebody at an exam, or who was.
 struct Sitting {
@@ -61,12 +67,13 @@ class Invigilation {
 
     /// What would be begun by this code, for the invigilator to look at: with no id. The code says which exam.
     /// `rubricFormat`: what this program knows. Throws core::Error: "exam-running", "exam-candidate-unknown",
-    /// "exam-early", "exam-expired", and requireFitting()'s.
+    /// "exam-early", "exam-expired", "exam-sealed" (before it was opened), and requireFitting()'s.
     [[nodiscard]] Sitting look(const std::string& candidateCode, std::int64_t rubricFormat, Milliseconds now) const;
-    /// Throws as look(), and "exam-invigilator" (not known, or another confirmation code), "exam-wait" (too many wrong
-    /// ones).
-    const Sitting& begin(const std::string& candidateCode, const std::string& invigilator, const std::string& pin,
-                         std::int64_t rubricFormat, Milliseconds now);
+    /// Throws as look(), and "exam-invigilator" (not known, or another confirmation code), "exam-confirmation-used",
+    /// "exam-wait" (too many wrong ones).
+    /// `from`: wrong codes of others than these make them wait no longer.
+    const Sitting& begin(const std::string& candidateCode, const std::string& invigilator, const std::string& code,
+                         std::int64_t rubricFormat, Milliseconds now, const std::string& from = {});
     /// Throw core::Error "exam-none" where nobody is at work, or `id` is another sitting.
     void checkpoint(const std::string& id, std::int64_t part, std::int64_t ticks, const std::string& inputs,
                     Milliseconds now);
@@ -75,7 +82,11 @@ class Invigilation {
     /// With the recordings that lie in their places; `works`: their assessment::workHash(). Returns the entry.
     Signed finish(const std::string& id, const std::vector<std::string>& works, Milliseconds now);
     /// Without work: an invigilator says so.
-    void giveUp(const std::string& id, const std::string& invigilator, const std::string& pin, Milliseconds now);
+    void giveUp(const std::string& id, const std::string& invigilator, const std::string& code, Milliseconds now,
+                const std::string& from = {});
+
+    /// The exam that an opening code is of, by an invigilator. Throws core::Error "exam-seal", "exam-wait".
+    void open(const std::string& typedCode, Milliseconds now, const std::string& from = {});
 
     [[nodiscard]] ChainEnd end() const { return end_; }
     /// What follows `number`, `most` at once.
@@ -88,7 +99,10 @@ class Invigilation {
   private:
     Signed add(Entry entry);
     void follow(const Entry& entry);
-    void requireInvigilator(const Pack& pack, const std::string& person, const std::string& pin, Milliseconds now);
+    /// Returns what the entry says of it.
+    std::string requireInvigilator(const Pack& pack, const Candidate& candidate, const std::string& person,
+                                   const std::string& code, Milliseconds now, const std::string& from);
+    void requirePatience(const std::string& who, Milliseconds now);
     const Sitting& current(const std::string& id) const;
 
     const std::filesystem::path folder_;
@@ -97,6 +111,7 @@ class Invigilation {
     ChainEnd end_{};
     std::optional<Sitting> sitting_;
     std::vector<std::pair<std::string, std::string>> begun_;  ///< exam and candidate, each time
+    std::set<std::string> spent_;                             ///< confirmations
     school::Throttle guesses_;
 };
 

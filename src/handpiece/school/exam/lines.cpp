@@ -92,6 +92,10 @@ void LineReader::end() const {
     if (!rest_.empty()) throw damaged("something follows it");
 }
 
+bool isOfKind(std::string_view text, std::string_view kind) {
+    return text.substr(0, text.find('\n')) == kind;
+}
+
 bool isCode(std::string_view text) {
     return !text.empty() && text.size() <= 64 && std::all_of(text.begin(), text.end(), [](char c) {
         return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-' || c == '_' ||

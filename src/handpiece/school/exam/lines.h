@@ -46,6 +46,8 @@ class LineReader {
     std::size_t line_ = 0;
 };
 
+/// Whether a text's first line says that it is of this kind and version.
+[[nodiscard]] bool isOfKind(std::string_view text, std::string_view kind);
 [[nodiscard]] bool isCode(std::string_view text);
 /// Throws "exam-damaged" through the reader.
 [[nodiscard]] std::int64_t wholeOf(const LineReader& reader, std::string_view text, std::int64_t low,

@@ -16,9 +16,9 @@
 namespace handpiece::exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam pack 1";
+constexpr std::string_view kKind = "handpiece exam pack 2", kFirstKind = "handpiece exam pack 1";
 constexpr std::int64_t kMostMs = 4'102'444'800'000;  // 2100
-constexpr std::size_t kMostCandidates = 2000;
+constexpr std::size_t kMostCandidates = 2000, kMostHash = 128;
 
 core::Error twice(const char* what, const std::string& which, const std::string& where) {
     return core::Error(fmt::format("the {} {} is in this exam twice", what, which), where, "give one of them another")
@@ -45,24 +45,31 @@ std::string toText(Pack p) {
               [](const Candidate& a, const Candidate& b) { return a.code < b.code; });
     std::sort(p.invigilators.begin(), p.invigilators.end(),
               [](const Invigilator& a, const Invigilator& b) { return a.person < b.person; });
-    LineWriter lines(kKind);
+    const bool isFirst = p.format == 1;
+    LineWriter lines(isFirst ? kFirstKind : kKind);
     lines.add("exam", p.exam).add("version", p.version).add("title", p.title).add("exercise", p.exercise);
     lines.add("file", p.file).add("bytes", p.bytes).add("rubric", p.rubric).add("rubric_format", p.rubricFormat);
     lines.add("engine", p.engine).add("opens_ms", p.opens).add("closes_ms", p.closes).add("minutes", p.minutes);
+    if (!isFirst) lines.add("seal", p.seal);
     lines.add("locked", p.locked.empty() ? "-" : fmt::format("{}", fmt::join(p.locked, " ")));
-    for (const Candidate& c : p.candidates)
+    for (const Candidate& c : p.candidates) {
         lines.add("candidate", fmt::format("{} {} {} {}", c.code, c.extraPercent, c.pauseMinutes,
                                            c.helps.empty() ? "-" : fmt::format("{}", fmt::join(c.helps, ","))));
+        for (const std::string& one : c.confirmations)
+            if (!isFirst) lines.add("confirmation", one);
+    }
     for (const Invigilator& i : p.invigilators)
-        lines.add("invigilator", fmt::format("{} {}", i.person, i.pin));
+        lines.add("invigilator", isFirst ? fmt::format("{} {}", i.person, i.pin) : i.person);
     // What is given out can be read.
     (void)packFrom(lines.text(), p.exam);
     return lines.text();
 }
 
 Pack packFrom(std::string_view text, const std::string& where) {
-    LineReader lines(text, kKind, where);
+    const bool isFirst = isOfKind(text, kFirstKind);
+    LineReader lines(text, isFirst ? kFirstKind : kKind, where);
     Pack p;
+    p.format = isFirst ? 1 : 2;
     p.exam = lines.code("exam");
     p.version = lines.whole("version", 1, 1'000'000);
     p.title = lines.text("title", 400);
@@ -72,27 +79,34 @@ Pack packFrom(std::string_view text, const std::string& where) {
     p.engine = lines.whole("engine", 0, 1'000'000);
     p.opens = lines.whole("opens_ms", 0, kMostMs), p.closes = lines.whole("closes_ms", p.opens, kMostMs);
     p.minutes = lines.whole("minutes", 1, 1440);
+    if (!isFirst) p.seal = lines.text("seal", kMostHash);
     if (const std::string locked = lines.text("locked", 400); locked != "-") p.locked = helpsIn(lines, locked, ' ');
     while (lines.isNext("candidate")) {
         const std::vector<std::string> parts = partsOf(lines.text("candidate", 400), ' ');
         if (parts.size() != 4 || !school::isHex(parts[0], 64)) throw lines.damaged("this is no candidate");
-        Candidate c{parts[0], wholeOf(lines, parts[1], 0, 300), wholeOf(lines, parts[2], 0, 600), {}};
+        Candidate c{parts[0], wholeOf(lines, parts[1], 0, 300), wholeOf(lines, parts[2], 0, 600)};
         if (parts[3] != "-") c.helps = helpsIn(lines, parts[3], ',');
         if (!p.candidates.empty() && p.candidates.back().code == c.code)
             throw twice("candidate's code", c.code.substr(0, 16) + "...", where);
         if (!p.candidates.empty() && p.candidates.back().code > c.code) throw lines.damaged("it is not in its place");
         if (p.candidates.size() == kMostCandidates) throw lines.damaged("there are too many candidates");
+        while (!isFirst && lines.isNext("confirmation")) {
+            c.confirmations.push_back(lines.text("confirmation", kMostHash));
+            if (c.confirmations.size() > 10 || c.confirmations.back().empty())
+                throw lines.damaged("this is no confirmation");
+        }
         p.candidates.push_back(std::move(c));
     }
     while (lines.isNext("invigilator")) {
         const std::vector<std::string> parts = partsOf(lines.text("invigilator", 300), ' ');
-        if (parts.size() != 2 || !isCode(parts[0]) || parts[1].empty()) throw lines.damaged("this is no invigilator");
+        if (parts.size() != (isFirst ? 2u : 1u) || !isCode(parts[0]) || parts.back().empty())
+            throw lines.damaged("this is no invigilator");
         if (!p.invigilators.empty() && p.invigilators.back().person == parts[0])
             throw twice("invigilator", parts[0], where);
         if (!p.invigilators.empty() && p.invigilators.back().person > parts[0])
             throw lines.damaged("it is not in its place");
         if (p.invigilators.size() == kMostCandidates) throw lines.damaged("there are too many invigilators");
-        p.invigilators.push_back({parts[0], parts[1]});
+        p.invigilators.push_back({parts[0], isFirst ? parts[1] : std::string()});
     }
     lines.end();
     return p;

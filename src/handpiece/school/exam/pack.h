@@ -25,15 +25,19 @@ struct Candidate {
     std::int64_t extraPercent = 0;     ///< more time, 0 to 300
     std::int64_t pauseMinutes = 0;     ///< and for pauses, 0 to 600
     std::vector<std::string> helps{};  ///< of cases::kHelps: unlocked for this one
+    /// Of codes that an invigilator has on paper, each to confirm this candidate once: school::hashOfPassword() of 60
+    /// random bits, which nobody guesses from that.
+    std::vector<std::string> confirmations{};
 };
 /// Who confirms at the station that the candidate is who they say.
 struct Invigilator {
     std::string person{};
-    std::string pin{};  ///< school::hashOfPassword()
+    std::string pin{};  ///< school::hashOfPassword(); of packs of format 1, where one code confirmed everybody
 };
 
 struct Pack {
-    std::string exam{};  ///< id of its assignment
+    std::int64_t format = 2;  ///< 1: of before; can be read and sat still
+    std::string exam{};       ///< id of its assignment
     std::int64_t version = 1;
     std::string title{};
     std::string exercise{};  ///< its content hash, 16 digits
@@ -44,6 +48,7 @@ struct Pack {
     std::int64_t engine = 0;  ///< revision that cuts the work again
     Milliseconds opens = 0, closes = 0;
     std::int64_t minutes = 0;                 ///< that one has
+    std::string seal{};                       ///< hashOfPassword() of the code that opens the exercise; format 1: none
     std::vector<std::string> locked{};        ///< of cases::kHelps, besides those of the exercise
     std::vector<Candidate> candidates{};      ///< by their codes' hashes, none twice
     std::vector<Invigilator> invigilators{};  ///< by person, none twice
@@ -58,6 +63,9 @@ struct Pack {
 
 /// What a typed code is in a pack: of this exam alone, so that two packs do not tell whose they are.
 [[nodiscard]] std::string candidateHash(std::string_view exam, std::string_view typedCode);
+
+/// Of each candidate so many codes: to begin, to begin again, to give up.
+inline constexpr std::size_t kConfirmations = 3;
 
 /// Throws core::Error "exam-rubric-newer", "exam-engine-other".
 void requireFitting(const Pack& pack, std::int64_t rubricFormat, std::int64_t engine);

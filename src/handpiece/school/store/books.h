@@ -164,7 +164,7 @@ struct BookTable {
 /// (what, which), "books-changed" (which: the id is there with another content), "books-invalid" (field).
 class Books {
   public:
-    static constexpr int kVersion = 6;
+    static constexpr int kVersion = 7;
     /// A job that so many workers took and none gave back is given up.
     static constexpr int kMostTurns = 5;
 

@@ -225,6 +225,15 @@ INSERT INTO deliveries (file, station, made)
   SELECT f.file, a.station, min(a.received) FROM attempt_files f JOIN attempts a ON a.id = f.attempt
   JOIN files c ON c.hash = f.file GROUP BY f.file, a.station;
 )sql",
+    // What confirms a candidate's identity is proven to the server, and an exam's exercise goes out sealed.
+    R"sql(
+CREATE TABLE exam_confirmations (
+  exam TEXT NOT NULL REFERENCES exam_settings (exam), person TEXT NOT NULL REFERENCES people (code),
+  number INT8 NOT NULL, hash TEXT NOT NULL, PRIMARY KEY (exam, person, number)) STRICT;
+CREATE TABLE exam_openings (
+  exam TEXT PRIMARY KEY REFERENCES exam_settings (exam), code TEXT NOT NULL, made INT8 NOT NULL) STRICT;
+ALTER TABLE exam_sittings ADD COLUMN confirmation INT8 NOT NULL DEFAULT 0;
+)sql",
 };
 
 /// What is written once and never changed, also by whoever comes to the database by another way; since which version.

@@ -18,10 +18,11 @@ void requireCount(const char* field, std::int64_t value, std::int64_t most) {
 }
 
 constexpr const char* kSittingColumns =
-    "SELECT id, exam, station, person, candidate, pack, invigilator, began, number, state, ended FROM exam_sittings";
+    "SELECT id, exam, station, person, candidate, pack, invigilator, began, number, state, ended, confirmation FROM "
+    "exam_sittings";
 ExamSitting sittingOf(const Statement& row) {
-    return {row.text(0), row.text(1),    row.text(2),    row.text(3), row.text(4),    row.text(5),
-            row.text(6), row.integer(7), row.integer(8), row.text(9), row.integer(10)};
+    return {row.text(0), row.text(1),    row.text(2),    row.text(3), row.text(4),     row.text(5),
+            row.text(6), row.integer(7), row.integer(8), row.text(9), row.integer(10), row.integer(11)};
 }
 constexpr const char* kEntryColumns =
     "SELECT station, number, hash, kind, sitting, text, key, signature, at, received FROM exam_entries";
@@ -112,6 +113,45 @@ void ExamBooks::set(const ExamInvigilator& i, const Act& act) {
         i.exam, i.person, i.pin);
     state_.note(act, "set invigilator", i.person, i.exam);
     transaction.commit();
+}
+
+void ExamBooks::add(const ExamConfirmation& c, const Act& act) {
+    if (c.hash.empty()) throw invalid("confirmation code", "", "give its hash");
+    Transaction transaction(*state_.database);
+    requireExam(state_.ask("SELECT 1 FROM exam_candidates WHERE exam = $1 AND person = $2", c.exam, c.person),
+                *state_.database, c.exam);
+    state_.run(
+        "INSERT INTO exam_confirmations (exam, person, number, hash) SELECT $1, $2, coalesce(max(number), 0) + 1, $3 "
+        "FROM exam_confirmations WHERE exam = $1 AND person = $2",
+        c.exam, c.person, c.hash);
+    state_.note(act, "set confirmation", c.person, c.exam);
+    transaction.commit();
+}
+
+std::vector<ExamConfirmation> ExamBooks::confirmations(const std::string& exam) const {
+    std::vector<ExamConfirmation> all;
+    Statement rows = state_.ask(
+        "SELECT exam, person, number, hash FROM exam_confirmations WHERE exam = $1 ORDER BY person, number", exam);
+    while (rows.next())
+        all.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.text(3)});
+    return all;
+}
+
+std::string ExamBooks::openingCode(const std::string& exam, const std::string& fresh, const Act& act) {
+    if (const auto there = openingCode(exam)) return *there;
+    Transaction transaction(*state_.database);
+    requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", exam), *state_.database, exam);
+    state_.run("INSERT INTO exam_openings (exam, code, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", exam, fresh,
+               act.at);
+    state_.note(act, "seal exam", exam);
+    transaction.commit();
+    return openingCode(exam).value();
+}
+
+std::optional<std::string> ExamBooks::openingCode(const std::string& exam) const {
+    Statement row = state_.ask("SELECT code FROM exam_openings WHERE exam = $1", exam);
+    if (!row.next()) return {};
+    return row.text(0);
 }
 
 std::vector<ExamCandidate> ExamBooks::candidates(const std::string& exam) const {
@@ -221,10 +261,12 @@ void ExamBooks::follow(const ExamEntry& e, const ExamSitting* begins) {
         throw unknown(*state_.database, "exam's entry before", std::to_string(e.number));
     if (begins) {
         if (!state_.any("INSERT INTO exam_sittings (id, exam, station, person, candidate, pack, invigilator, began, "
-                        "number, state, ended) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'begun', 0) ON CONFLICT DO "
+                        "number, state, ended, confirmation) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'begun', 0, "
+                        "CASE WHEN EXISTS (SELECT 1 FROM exam_sittings WHERE exam = $2 AND person = $4 AND "
+                        "abs(confirmation) = $10) THEN -CAST($10 AS INT8) ELSE CAST($10 AS INT8) END) ON CONFLICT DO "
                         "NOTHING RETURNING id",
                         begins->id, begins->exam, e.station, begins->person, begins->candidate, begins->pack,
-                        begins->invigilator, begins->began, e.number))
+                        begins->invigilator, begins->began, e.number, begins->confirmation))
             throw changed(*state_.database, "sitting", begins->id);
     } else if (!e.sitting.empty() &&
                !state_.any("SELECT 1 FROM exam_sittings WHERE id = $1 AND station = $2 AND state = 'begun'", e.sitting,

@@ -28,6 +28,12 @@ struct ExamCandidate {
 struct ExamInvigilator {
     std::string exam{}, person{}, pin{};  ///< a hash
 };
+/// That an invigilator was there when a candidate began: a code on paper, each good once.
+struct ExamConfirmation {
+    std::string exam{}, person{};
+    std::int64_t number = 0;  ///< from 1; those of before stay
+    std::string hash{};       ///< hashOfPassword()
+};
 struct ExamPack {
     std::string exam{};
     std::int64_t version = 0;
@@ -47,6 +53,8 @@ struct ExamSitting {
     std::int64_t number = 0;  ///< of the entry that began it
     std::string state{};      ///< "begun", "given-up", "finished"
     Milliseconds ended = 0;
+    /// Number of the code that confirmed its beginning; negative: one that had been used. 0: of a pack of before.
+    std::int64_t confirmation = 0;
 };
 /// Of a sitting, in their order; none is ever changed.
 struct ExamDecision {
@@ -74,6 +82,12 @@ class ExamBooks : public BooksRoom {
     void set(const ExamInvigilator& invigilator, const Act& act);
     [[nodiscard]] std::vector<ExamCandidate> candidates(const std::string& exam) const;
     [[nodiscard]] std::vector<ExamInvigilator> invigilators(const std::string& exam) const;
+    /// The next of this person's, after those that are there.
+    void add(const ExamConfirmation& confirmation, const Act& act);
+    [[nodiscard]] std::vector<ExamConfirmation> confirmations(const std::string& exam) const;
+    /// What opens its exercise; `fresh` becomes it where there is none yet.
+    [[nodiscard]] std::string openingCode(const std::string& exam, const std::string& fresh, const Act& act);
+    [[nodiscard]] std::optional<std::string> openingCode(const std::string& exam) const;
     /// Whose it is or was: a code that was replaced stands in packs that are out.
     [[nodiscard]] std::optional<std::string> personOfCode(const std::string& exam, const std::string& code) const;
 

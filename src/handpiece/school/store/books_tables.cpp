@@ -74,10 +74,11 @@ constexpr std::array kListed = {
     Listed{"exam_confirmations", "t exam, t person, i number", "exam, person, number", "person = $1"},
     Listed{"exam_openings", "t exam, i made", "exam", nullptr},
     Listed{"exam_packs", "t exam, i version, t hash, t key, t signature, i made", "exam, version", nullptr},
-    Listed{"exam_sittings",
-           "t id, t exam, t station, t person, t candidate, t pack, t invigilator, i began, i number, t state, i ended, "
-           "i confirmation",
-           "id", "person = $1 OR invigilator = $1"},
+    Listed{
+        "exam_sittings",
+        "t id, t exam, t station, t person, t candidate, t pack, t invigilator, i began, i number, t state, i ended, "
+        "i confirmation",
+        "id", "person = $1 OR invigilator = $1"},
     Listed{"exam_entries",
            "t station, i number, t hash, t kind, t sitting, t text, t key, t signature, i at, i received",
            "station, number", HANDPIECE_OF_SITTINGS},

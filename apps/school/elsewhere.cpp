@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <functional>
 
 #include "handpiece/base/core/error.h"
@@ -74,6 +75,20 @@ Elsewhere post(const std::string& address, const std::string& body, const char* 
 
 void requireAddress(const std::string& address) {
     (void)addressOf(address);
+}
+
+std::string hostOf(const std::string& address) {
+    try {
+        const std::string server = addressOf(address).server;
+        std::string host = server.substr(server.find("://") + 3);
+        if (const std::size_t port = host.rfind(':'); port != host.npos && host.find(']', port) == host.npos)
+            host.resize(port);
+        std::transform(host.begin(), host.end(), host.begin(),
+                       [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+        return host;
+    } catch (const core::Error&) {
+        return {};
+    }
 }
 
 }  // namespace handpiece::school_server

@@ -19,5 +19,7 @@ struct Elsewhere {
                              const std::vector<std::pair<std::string, std::string>>& headers = {});
 /// Throws core::Error "platform-address" for what is not called.
 void requireAddress(const std::string& address);
+/// In small letters, without its port; empty: nothing that is called.
+[[nodiscard]] std::string hostOf(const std::string& address);
 
 }  // namespace handpiece::school_server

@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "handpiece/app/statements/statements.h"
 #include "handpiece/base/config/outside_json.h"
@@ -25,6 +27,7 @@ using school::LtiBooks;
 using school::Milliseconds;
 
 constexpr std::int64_t kSkewS = 120, kLongestS = 3600;
+constexpr Milliseconds kBegunMs = 600'000;
 constexpr const char* kClaim = "https://purl.imsglobal.org/spec/lti/claim/";
 constexpr const char* kEndpoint = "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint";
 constexpr const char* kScoreScope = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
@@ -88,7 +91,7 @@ std::int64_t seconds(const Json& json, const std::string& key) {
     return static_cast<std::int64_t>(value);
 }
 
-void requireClaims(const Json& c, const school::LtiPlatform& platform, const std::string& nonceHash, Milliseconds now) {
+void requireClaims(const Json& c, const school::LtiPlatform& platform, const std::string& nonce, Milliseconds now) {
     const std::int64_t nowS = now / 1000;
     if (text(c, "iss") != platform.issuer) throw claim("iss", "another platform's");
     const Json& aud = at(c, "aud");
@@ -104,7 +107,7 @@ void requireClaims(const Json& c, const school::LtiPlatform& platform, const std
     if (made > nowS + kSkewS) throw claim("iat", "it is of the future: see the clocks of both");
     if (made + kLongestS <= nowS) throw claim("iat", "it is too old");
     if (c.contains("nbf") && seconds(c, "nbf") > nowS + kSkewS) throw claim("nbf", "it is not valid yet");
-    if (!school::isSameSecret(school::sha256(text(c, "nonce")), nonceHash)) throw claim("nonce", "another log-in's");
+    if (!school::isSameSecret(text(c, "nonce"), nonce)) throw claim("nonce", "another log-in's");
     const std::string base = kClaim;
     if (text(c, base + "version") != "1.3.0") throw claim("version", "1.3.0 is known here");
     if (text(c, base + "message_type") != "LtiResourceLinkRequest") throw claim("message_type", "not known here");
@@ -161,6 +164,41 @@ std::string bearerOf(const school::LtiPlatform& platform, const RsaKey& key, Mil
     return token;
 }
 
+/// "EXPIRES.PLATFORM.SEAL": whoever comes back with it began here, in the browser that has the cookie.
+std::string stateOf(const std::string& key, Milliseconds expires, const std::string& platform,
+                    const std::string& cookie) {
+    const std::string open = fmt::format("{}.{}", expires, platform);
+    return open + "." + school::sealOf(key, fmt::format("state {} in {}", open, cookie));
+}
+struct Begun {
+    Milliseconds expires = 0;
+    std::string platform{};
+};
+/// None: not by this key, or in another browser.
+std::optional<Begun> begunBy(const std::string& key, const std::string& state, const std::string& cookie) {
+    Begun begun;
+    const char* const last = state.data() + state.size();
+    const auto [end, ec] = std::from_chars(state.data(), last, begun.expires);
+    const std::size_t seal = state.rfind('.');
+    const auto first = static_cast<std::size_t>(end - state.data());
+    if (cookie.empty() || ec != std::errc() || end == last || *end != '.' || seal <= first) return {};
+    begun.platform = state.substr(first + 1, seal - first - 1);
+    if (!school::isSameSecret(stateOf(key, begun.expires, begun.platform, cookie), state)) return {};
+    return begun;
+}
+std::string nonceOf(const std::string& key, const std::string& state) {
+    return school::sealOf(key, "nonce of " + state);
+}
+
+/// What lets this server write grades is sent to where the platform is, as its administrator told it; a launch may name
+/// any address.
+bool isAt(const school::LtiPlatform& platform, const std::string& line) {
+    const std::string host = hostOf(line);
+    if (host.empty() || (line.starts_with("http://") && !platform.tokenAddress.starts_with("http://"))) return false;
+    const auto known = {&platform.issuer, &platform.authAddress, &platform.tokenAddress, &platform.keysAddress};
+    return std::any_of(known.begin(), known.end(), [&](const std::string* own) { return hostOf(*own) == host; });
+}
+
 /// .../lineitems/1?x=y -> .../lineitems/1/scores?x=y
 std::string scoresAddress(const std::string& line) {
     const std::size_t end = std::min(line.find_first_of("?#"), line.size());
@@ -169,38 +207,38 @@ std::string scoresAddress(const std::string& line) {
 
 }  // namespace
 
-Beginning beginLaunch(Books& books, const std::string& issuer, const std::string& client, const std::string& hint,
-                      const std::string& messageHint, const std::string& ownAddress, Milliseconds now) {
-    LtiBooks lti(books);
+Beginning beginLaunch(Books& books, const std::string& key, const std::string& issuer, const std::string& client,
+                      const std::string& hint, const std::string& messageHint, const std::string& ownAddress,
+                      Milliseconds now) {
+    const LtiBooks lti(books);
     const auto platform = lti.platform(issuer, client);
     if (!platform)
         throw core::Error("this platform is not known here", issuer.substr(0, 200),
                           "its administrator gives its addresses to this school's: handpiece school lti platform")
             .as("platform-unknown", {issuer.substr(0, 200)});
-    Beginning beginning{platform->authAddress, school::newSecret()};
-    const std::string nonce = school::newSecret();
-    lti.begin(beginning.state, nonce, platform->id, now);
+    Beginning beginning{platform->authAddress, {}, school::newSecret()};
+    beginning.state = stateOf(key, now + kBegunMs, platform->id, beginning.cookie);
     httplib::Params asks{
         {"scope", "openid"},  {"response_type", "id_token"},   {"response_mode", "form_post"},
         {"prompt", "none"},   {"client_id", platform->client}, {"redirect_uri", ownAddress + "/lti/launch"},
-        {"login_hint", hint}, {"state", beginning.state},      {"nonce", nonce}};
+        {"login_hint", hint}, {"state", beginning.state},      {"nonce", nonceOf(key, beginning.state)}};
     if (!messageHint.empty()) asks.emplace("lti_message_hint", messageHint);
     beginning.to +=
         (beginning.to.find('?') == std::string::npos ? "?" : "&") + httplib::detail::params_to_query_str(asks);
     return beginning;
 }
 
-Launch takeLaunch(Books& books, const std::string& token, const std::string& state, const std::string& cookie,
-                  Milliseconds now) {
+Launch takeLaunch(Books& books, const std::string& key, const std::string& token, const std::string& state,
+                  const std::string& cookie, Milliseconds now) {
     LtiBooks lti(books);
     const auto notBegun = [](const char* why) {
         return core::Error(fmt::format("this log-in cannot be gone on with: {}", why), "launch",
                            "begin anew, from the platform, in a window of its own")
             .as("launch-state", {why});
     };
-    if (state.empty() || !school::isSameSecret(state, cookie)) throw notBegun("it was begun in another browser");
-    const auto begun = lti.take(state, now);
-    if (!begun) throw notBegun("it was not begun here, took too long, or came before");
+    const auto begun = begunBy(key, state, cookie);
+    if (!begun) throw notBegun("it was not begun here, or in another browser");
+    if (begun->expires <= now) throw notBegun("it took too long");
     const auto platform = lti.platform(begun->platform);
     if (!platform) throw notBegun("its platform is gone");
     std::string claims;
@@ -212,7 +250,8 @@ Launch takeLaunch(Books& books, const std::string& token, const std::string& sta
         claims = claimsOf(token, keySets().of(platform->keysAddress, true, now));
     }
     const Json c = config::requireOutsideJson<Json>(claims);
-    requireClaims(c, *platform, begun->nonceHash, now);
+    requireClaims(c, *platform, nonceOf(key, state), now);
+    if (!lti.isFirst(state, platform->id, begun->expires, now)) throw notBegun("it came before");
     Launch launch{personOf(lti, *platform, c), "/classes"};
     const std::string id = text(at(c, std::string(kClaim) + "custom"), "assignment");
     if (const auto assignment = id.size() <= 64 ? books.assignment(id) : std::nullopt) {
@@ -225,8 +264,11 @@ Launch takeLaunch(Books& books, const std::string& token, const std::string& sta
         const std::string line = text(endpoint, "lineitem");
         if (isStudent && !line.empty() && line.size() <= 1000 && scopes.is_array() &&
             std::find(scopes.begin(), scopes.end(), kScoreScope) != scopes.end()) {
-            requireAddress(line);
-            lti.set(school::LtiLine{id, launch.person.code, platform->id, text(c, "sub"), line});
+            if (isAt(*platform, line))
+                lti.set(school::LtiLine{id, launch.person.code, platform->id, text(c, "sub"), line});
+            else
+                books.note({"server", now}, "line item refused", launch.person.code,
+                           fmt::format("{} is not where {} is", line.substr(0, 200), platform->issuer.substr(0, 200)));
         }
     }
     return launch;
@@ -254,6 +296,11 @@ std::size_t sendGrades(Books& books, const RsaKey& key, const std::function<Mill
         try {
             const auto platform = lti.platform(grade->line.platform);
             if (!platform) throw core::Error("its platform is gone");
+            // Before its platform's addresses were others, or by an older version.
+            if (!isAt(*platform, grade->line.address))
+                throw core::Error("its line item is not where the platform is", grade->line.address.substr(0, 200),
+                                  "give the platform's addresses anew: handpiece school lti platform")
+                    .as("platform-address", {grade->line.address.substr(0, 200)});
             std::string& bearer = bearers[platform->id];
             if (bearer.empty()) bearer = bearerOf(*platform, key, clock());
             const Elsewhere answer =

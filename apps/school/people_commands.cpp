@@ -7,6 +7,7 @@
 #include <memory>
 #include <span>
 
+#include "handpiece/base/core/csv_cell.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/school/keeping/person_export.h"
@@ -48,12 +49,7 @@ void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, 
         const std::string code = school::newStationCode();
         school::BooksAccounts(books).offerPasswordCode(
             person->code, code, act.at + static_cast<school::Milliseconds>(o.days) * 86'400'000, act);
-        const auto quoted = [](std::string text) {
-            for (std::size_t at = 0; (at = text.find('"', at)) != text.npos; at += 2)
-                text.insert(at, "\"");
-            return '"' + text + '"';
-        };
-        csv += fmt::format("{},{},{}\r\n", quoted(person->login), quoted(person->name), code);
+        csv += fmt::format("{},{},{}\r\n", core::csvCell(person->login), core::csvCell(person->name), code);
         ++count;
     }
     core::writeFile(o.codes, csv, {.ownerOnly = true});

@@ -2,6 +2,7 @@
 #include "school/server.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -38,6 +39,20 @@ constexpr time_t kKeepAliveS = 5;
 
 /// That the request of this thread was refused at the door.
 thread_local bool refusedNow = false;
+
+/// Each connection takes a descriptor, and the 1024 that a system gives to whoever asks for no more are soon gone. How
+/// many connections there may be: some are kept for books, files and workers.
+std::size_t roomForConnections() {
+    constexpr rlim_t kWanted = 8192, kKept = 256;
+    rlimit there{};
+    if (getrlimit(RLIMIT_NOFILE, &there) != 0) return kWanted - kKept;
+    if (there.rlim_cur < kWanted) {
+        const rlimit more{std::min(there.rlim_max, kWanted), there.rlim_max};
+        if (setrlimit(RLIMIT_NOFILE, &more) == 0) there = more;
+    }
+    const rlim_t all = std::min(there.rlim_cur, kWanted);
+    return all > 2 * kKept ? all - kKept : all / 2;
+}
 
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
@@ -101,7 +116,7 @@ struct Server::State : Service {
                               "another program is there, or the address is none of this machine's: give another one")
                 .as("port-taken", {settings.host, std::to_string(settings.port)});
         letManyWait();
-        guard = std::make_unique<SlowGuard>(listening, settings.slow);
+        guard = std::make_unique<SlowGuard>(listening, settings.slow, bounds());
         for (std::size_t i = 0; i < settings.workers; ++i)
             workers.push_back(std::make_unique<Worker>(WorkerSettings{settings.data, settings.database}, clock));
     }
@@ -123,6 +138,14 @@ struct Server::State : Service {
         constexpr int kMostWaiting = 1024;
         if (::listen(listening, kMostWaiting) != 0)
             std::fprintf(stderr, "handpiece-school: few may wait to be taken: %s\n", std::strerror(errno));
+    }
+
+    [[nodiscard]] SlowGuard::Bounds bounds() const {
+        constexpr std::size_t kLeastOfAddress = 200;  // behind which a whole school may sit
+        SlowGuard::Bounds bounds{std::max(kLeastOfAddress, settings.threads / 2), roomForConnections()};
+        for (const auto* proxies : {&settings.proxies, &settings.signOn.proxies})
+            bounds.excepted.insert(proxies->begin(), proxies->end());
+        return bounds;
     }
 
     void configure() {

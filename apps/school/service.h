@@ -7,7 +7,9 @@
 #include <atomic>
 #include <cstdint>
 #include <mutex>
+#include <string>
 
+#include "handpiece/school/people/secret.h"
 #include "handpiece/school/people/throttle.h"
 #include "school/books_pool.h"
 #include "school/live_board.h"
@@ -43,6 +45,7 @@ struct Service {
 
     const Settings settings;
     const Clock clock;
+    const std::string launchKey = school::newSecret();  ///< of log-ins under way; anew with each start
     BooksPool books;
     LiveBoard live;
     ReviewShelf reviews;

@@ -94,16 +94,16 @@ void beginHere(Service& of, const Request& request, Response& response) {
     try {
         auto open = of.books.take();
         const Beginning beginning =
-            beginLaunch(*open, request.get_param_value("iss"), request.get_param_value("client_id"),
+            beginLaunch(*open, of.launchKey, request.get_param_value("iss"), request.get_param_value("client_id"),
                         request.get_param_value("login_hint").substr(0, 1000),
                         request.get_param_value("lti_message_hint").substr(0, 4000), of.settings.address, of.clock());
         answer(response, Page{303, {}, beginning.to}, of.isSecure());
         // It comes back by a form of the platform's: only a cookie that says None comes along.
         response.set_header("Set-Cookie",
-                            fmt::format("{}={}; Path=/lti; HttpOnly; Max-Age=600{}", kLaunchCookie, beginning.state,
+                            fmt::format("{}={}; Path=/lti; HttpOnly; Max-Age=600{}", kLaunchCookie, beginning.cookie,
                                         isSecureAddress(of) ? "; Secure; SameSite=None" : ""));
     } catch (const core::Error& e) {
-        if (e.id() != "platform-unknown" && e.id() != "books-invalid") throw;
+        if (e.id() != "platform-unknown") throw;
         refuseLaunch(of, request, response, e);
     }
 }
@@ -113,8 +113,8 @@ void launchHere(Service& of, const Request& request, Response& response) {
         std::optional<Launch> launch;
         {
             auto open = of.books.take();
-            launch = takeLaunch(*open, request.get_param_value("id_token"), request.get_param_value("state"),
-                                secretInCookie(request, kLaunchCookie), of.clock());
+            launch = takeLaunch(*open, of.launchKey, request.get_param_value("id_token"),
+                                request.get_param_value("state"), secretInCookie(request, kLaunchCookie), of.clock());
         }
         answer(response, welcome(of, launch->person, launch->to, "LTI 1.3"), isSecureAddress(of));
     } catch (const core::Error& e) {

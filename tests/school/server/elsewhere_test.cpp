@@ -34,6 +34,7 @@ using testing::SizeIs;
 
 constexpr const char* kClaim = "https://purl.imsglobal.org/spec/lti/claim/";
 constexpr const char* kOwn = "http://localhost:9";  // as it is said, never called
+const std::string kKey(64, 'k');
 
 /// A process of Node's.
 class Platform {
@@ -94,17 +95,18 @@ class ElsewhereTest : public SchoolTest {
     }
 
     struct Begun {
-        std::string state, nonce;
+        std::string state, nonce, cookie;
     };
     Begun begin(Books& open, Milliseconds now) const {
-        const Beginning beginning = beginLaunch(open, "https://platform.example", "", "hint", "message", kOwn, now);
+        const Beginning beginning =
+            beginLaunch(open, kKey, "https://platform.example", "", "hint", "message", kOwn, now);
         httplib::Params asked;
         httplib::detail::parse_query_text(beginning.to.substr(beginning.to.find('?') + 1), asked);
         EXPECT_EQ(asked.find("state")->second, beginning.state);
         EXPECT_EQ(asked.find("redirect_uri")->second, std::string(kOwn) + "/lti/launch");
         EXPECT_EQ(asked.find("response_mode")->second, "form_post");
         EXPECT_EQ(asked.find("lti_message_hint")->second, "message");
-        return {beginning.state, asked.find("nonce")->second};
+        return {beginning.state, asked.find("nonce")->second, beginning.cookie};
     }
     [[nodiscard]] json claims(const std::string& nonce, Milliseconds now) const {
         const std::string base = kClaim;
@@ -130,7 +132,7 @@ class ElsewhereTest : public SchoolTest {
         change(said, how);
         how["claims"] = said;
         const std::string token = platform_.ask("/sign", how);
-        return errorIdOf([&] { person_ = takeLaunch(open, token, begun.state, begun.state, now_).person.code; });
+        return errorIdOf([&] { person_ = takeLaunch(open, kKey, token, begun.state, begun.cookie, now_).person.code; });
     }
     /// Finished and pushed, as work on the assignment.
     std::string work() const {
@@ -218,16 +220,24 @@ TEST_F(ElsewhereTest, WhatIsNotThePlatformsWordIsRefused) {
     // One state once; of this browser; not older than ten minutes.
     const Begun first = begin(open, now_), second = begin(open, now_), old = begin(open, now_ - 601'000);
     const std::string token = platform_.ask("/sign", {{"claims", claims(first.nonce, now_)}});
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, first.state, second.state, now_); }), "launch-state");
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, first.state, "", now_); }), "launch-state");
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, "", "", now_); }), "launch-state");
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, first.state, first.state, now_); }), "");
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, first.state, first.state, now_); }), "launch-state")
-        << "the same again";
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, second.state, second.state, now_); }), "launch-claim")
+    const auto taken = [&](const std::string& state, const std::string& cookie, const std::string& key = kKey) {
+        return errorIdOf([&] { (void)takeLaunch(open, key, token, state, cookie, now_); });
+    };
+    EXPECT_EQ(taken(first.state, second.cookie), "launch-state");
+    EXPECT_EQ(taken(first.state, ""), "launch-state");
+    EXPECT_EQ(taken("", ""), "launch-state");
+    EXPECT_EQ(taken(first.state, first.cookie, std::string(64, 'o')), "launch-state") << "another server's";
+    for (const std::string& no :
+         {std::string("."), std::string(".."), std::string("1"), std::string("1."), "9" + first.state,
+          first.state + "0", std::string(5000, '.'), std::string("99999999999999999999.a.b"),
+          first.state.substr(0, first.state.rfind('.'))})
+        EXPECT_EQ(taken(no, first.cookie), "launch-state") << no.substr(0, 100);
+    EXPECT_EQ(taken(first.state, first.cookie), "");
+    EXPECT_EQ(taken(first.state, first.cookie), "launch-state") << "the same again";
+    EXPECT_EQ(taken(second.state, second.cookie), "launch-claim")
         << "the same token in another log-in: its nonce is used";
-    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, token, old.state, old.state, now_); }), "launch-state");
-    EXPECT_EQ(errorIdOf([&] { (void)beginLaunch(open, "https://nobody.example", "", "", "", kOwn, now_); }),
+    EXPECT_EQ(taken(old.state, old.cookie), "launch-state");
+    EXPECT_EQ(errorIdOf([&] { (void)beginLaunch(open, kKey, "https://nobody.example", "", "", "", kOwn, now_); }),
               "platform-unknown");
     for (const std::string& nonsense :
          {std::string(), std::string("x"), std::string("a.b.c"), std::string("..."), std::string(70'000, 'a')})
@@ -281,17 +291,18 @@ TEST_F(ElsewhereTest, ABrowserGoesThroughALaunchAndIsNoted) {
     httplib::detail::parse_query_text(to.substr(to.find('?') + 1), asked);
     const std::string state = asked.find("state")->second;
     const std::string cookie = start->get_header_value("Set-Cookie");
-    EXPECT_THAT(cookie, AllOf(HasSubstr("handpiece-lti=" + state), HasSubstr("HttpOnly")));
+    EXPECT_THAT(cookie, AllOf(testing::StartsWith("handpiece-lti="), HasSubstr("HttpOnly")));
+    const std::string browser = cookie.substr(0, cookie.find(';'));
     const std::string token =
         platform_.ask("/sign", {{"claims", claims(asked.find("nonce")->second, systemClock()())}});
     const httplib::Params form{{"id_token", token}, {"state", state}};
     EXPECT_EQ(http.Post("/lti/launch", form)->status, 403) << "another browser's";
-    const auto launched = http.Post("/lti/launch", {{"Cookie", "handpiece-lti=" + state}}, form);
+    const auto launched = http.Post("/lti/launch", {{"Cookie", browser}}, form);
     ASSERT_EQ(launched->status, 200) << launched->body;
     EXPECT_THAT(launched->body, AllOf(HasSubstr("Ida"), HasSubstr("/people/s017")));
     const std::string login = launched->get_header_value("Set-Cookie").substr(0, 74);
     EXPECT_EQ(http.Get("/people/s017", {{"Cookie", login}})->status, 200);
-    EXPECT_EQ(http.Post("/lti/launch", {{"Cookie", "handpiece-lti=" + state}}, form)->status, 403) << "once";
+    EXPECT_EQ(http.Post("/lti/launch", {{"Cookie", browser}}, form)->status, 403) << "once";
     const auto unknown = http.Get("/lti/login?iss=https://nobody.example&login_hint=h");
     EXPECT_EQ(unknown->status, 403);
     EXPECT_THAT(http.Get("/lti/jwks")->body, AllOf(HasSubstr("\"RS256\""), Not(HasSubstr("\"d\""))));
@@ -302,6 +313,59 @@ TEST_F(ElsewhereTest, ABrowserGoesThroughALaunchAndIsNoted) {
     for (const school::AuditLine& line : books().audit(0, 1000))
         refused += line.what == "launch refused" ? 1 : 0;
     EXPECT_EQ(refused, 3u);
+}
+
+TEST_F(ElsewhereTest, HoweverManyBeginNobodyElseIsShutOut) {
+    Books open(data());
+    const Begun first = begin(open, now_);
+    const std::string token = platform_.ask("/sign", {{"claims", claims(first.nonce, now_)}});
+    for (int i = 0; i < 10'100; ++i)
+        (void)beginLaunch(open, kKey, "https://platform.example", "client-1", "", "", kOwn, now_);
+    EXPECT_EQ(errorIdOf([&] { (void)takeLaunch(open, kKey, token, first.state, first.cookie, now_); }), "");
+    EXPECT_EQ(launched([](json&, json&) {}), "");
+    // What came is known for as long as it could come again.
+    LtiBooks lti(open);
+    const std::string platform = lti.platforms().front().id;
+    EXPECT_TRUE(lti.isFirst("a state", platform, 2000, 1000));
+    EXPECT_FALSE(lti.isFirst("a state", platform, 2000, 1999));
+}
+
+TEST_F(ElsewhereTest, GradesGoToThePlatformAndNowhereElse) {
+    const auto line = [&](const std::string& address) {
+        EXPECT_EQ(launched([&](json& c, json&) {
+                      c["https://purl.imsglobal.org/spec/lti-ags/claim/endpoint"]["lineitem"] = address;
+                  }),
+                  "")
+            << "the person comes in all the same";
+        Books open(data());
+        const auto lines = LtiBooks(open).lines();
+        return lines.empty() ? std::string() : lines.front().address;
+    };
+    std::size_t refused = 0;
+    for (const char* elsewhere : {"https://thief.example/lineitems/1", "https://platform.example.thief.example/1",
+                                  "http://platform.example/1", "https://platform.example@thief.example/1",
+                                  "http://localhost:1/lineitems/1", "ftp://platform.example/1", "x"}) {
+        EXPECT_EQ(line(elsewhere), "") << elsewhere;
+        ++refused;
+    }
+    std::size_t noted = 0;
+    for (const school::AuditLine& one : books().audit(0, 1000))
+        noted += one.what == "line item refused" && one.about == "s017" ? 1 : 0;
+    EXPECT_EQ(noted, refused);
+    EXPECT_EQ(line("https://PLATFORM.example:8443/lineitems/1"), "https://PLATFORM.example:8443/lineitems/1");
+    EXPECT_EQ(line(platform_.address() + "/lineitems/1"), platform_.address() + "/lineitems/1");
+    // The platform has other addresses by now, all of them by TLS: what waits is not sent after it.
+    (void)work();
+    Books open(data());
+    EXPECT_EQ(queueGrades(open, now_), 1u);
+    LtiBooks lti(open);
+    school::LtiPlatform moved = lti.platforms().front();
+    moved.authAddress = moved.tokenAddress = moved.keysAddress = "https://platform.example/x";
+    (void)lti.set(moved, {"server", 1});
+    const RsaKey key(data() / "lti.pem");
+    EXPECT_EQ(sendGrades(open, key, [&] { return now_; }), 0u);
+    EXPECT_THAT(lti.grades().back().problem, HasSubstr("not where the platform is"));
+    EXPECT_EQ(platform_.told()["scores"].size(), 0u);
 }
 
 TEST_F(ElsewhereTest, GradesGoBackOnceTheyAreConfirmed) {

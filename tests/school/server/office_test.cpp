@@ -146,6 +146,12 @@ TEST_F(OfficeTest, OneClickGivesAllThatIsHeldAndOneErases) {
         EXPECT_THAT(text(name), Not(HasSubstr("argon2id"))) << name;
     for (const auto& entry : fs::directory_iterator(data() / "uploads"))
         ADD_FAILURE() << entry.path() << " is left behind";
+    // A name with which a spreadsheet would reckon.
+    EXPECT_EQ(send("/office/people/s018/name", {{"name", "-cmd|x"}, {"login", "s018"}})->status, 303);
+    const auto reckoned = browser_->get("/office/people/s018/export");
+    const auto its = cases::readPackage(std::as_bytes(std::span(reckoned->body)), "s018.zip");
+    const auto& identity = its.at("tables/identities.csv");
+    EXPECT_THAT(std::string(reinterpret_cast<const char*>(identity.data()), identity.size()), HasSubstr(",'-cmd|x,"));
     // Each may have their own.
     Browser ida(school_->address());
     ASSERT_EQ(ida.logIn("ida"), 303);

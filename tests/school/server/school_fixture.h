@@ -126,6 +126,8 @@ class School {
         std::string database{};
         SignOn signOn{};
         std::string address{};
+        std::size_t threads = Settings{}.threads;
+        std::vector<std::string> proxies{};
     };
     School(const fs::path& data, const Odd& odd) : data_(data) {
         Settings settings;
@@ -133,6 +135,7 @@ class School {
         settings.port = odd.port, settings.workers = odd.workers, settings.slow = odd.slow;
         settings.oldestProtocol = odd.oldest, settings.newestProtocol = odd.newest;
         settings.signOn = odd.signOn, settings.address = odd.address;
+        settings.threads = odd.threads, settings.proxies = odd.proxies;
         server_ = std::make_unique<Server>(settings);
         thread_ = std::thread([this] { server_->run(); });
         httplib::Client http(address());

@@ -5,10 +5,12 @@
 #include <sys/time.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
 #include "school/server/pages_fixture.h"
+#include "school/slow_guard.h"
 
 namespace handpiece::school_server {
 namespace {
@@ -184,16 +186,34 @@ TEST_F(SecurityTest, WhatIsInjectedIsTextOrRefusedAndNeverAFault) {
     }
 }
 
-/// Sends as it is, and hears what comes until the other side closes.
-std::string raw(int port, const std::string& text, int waitS = 3) {
-    std::string heard;
+sockaddr_in loopback(in_addr_t host, int port) {
+    sockaddr_in at{};
+    at.sin_family = AF_INET, at.sin_port = htons(static_cast<std::uint16_t>(port)), at.sin_addr.s_addr = htonl(host);
+    return at;
+}
+/// To a port of this machine, from one of its loopback's addresses; -1: nobody is there.
+int lineFrom(in_addr_t host, int port) {
     const int line = socket(AF_INET, SOCK_STREAM, 0);
-    sockaddr_in to{};
-    to.sin_family = AF_INET, to.sin_port = htons(static_cast<std::uint16_t>(port)),
-    to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    const sockaddr_in from = loopback(host, 0), to = loopback(INADDR_LOOPBACK, port);
+    if (bind(line, reinterpret_cast<const sockaddr*>(&from), sizeof from) == 0 &&
+        connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0)
+        return line;
+    close(line);
+    return -1;
+}
+bool isOpen(int line) {
+    char byte = 0;
+    const ssize_t got = recv(line, &byte, 1, MSG_DONTWAIT);
+    return got > 0 || (got < 0 && errno == EAGAIN);
+}
+
+/// Sends as it is, and hears what comes until the other side closes.
+std::string raw(int port, const std::string& text, int waitS = 3, in_addr_t from = INADDR_LOOPBACK) {
+    std::string heard;
+    const int line = lineFrom(from, port);
     const timeval patience{waitS, 0};
     setsockopt(line, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
-    if (connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0) {
+    if (line >= 0) {
         for (std::size_t at = 0; at < text.size();) {
             const ssize_t sent = send(line, text.data() + at, text.size() - at, MSG_NOSIGNAL);
             if (sent <= 0) break;
@@ -301,15 +321,111 @@ TEST_F(SecurityTest, WhoSendsAByteASecondStopsNobodyAndIsCutOff) {
         std::this_thread::sleep_for(std::chrono::milliseconds(500));
         alive = 0;
         for (const int line : lines) {
-            char byte = 0;
-            const bool isOpen =
-                send(line, "x", 1, MSG_NOSIGNAL) == 1 && (recv(line, &byte, 1, MSG_DONTWAIT) > 0 || errno == EAGAIN);
-            alive += isOpen ? 1 : 0;
+            alive += send(line, "x", 1, MSG_NOSIGNAL) == 1 && isOpen(line) ? 1 : 0;
         }
     }
     EXPECT_EQ(alive, 0);
     for (const int line : lines)
         close(line);
+}
+
+/// So many of one address, each in the middle of a head.
+std::vector<int> crowd(int port, int count) {
+    const std::string start = "GET /login HTTP/1.1\r\nHost: x\r\nX-Slow: ";
+    std::vector<int> lines;
+    for (int i = 0; i < count; ++i) {
+        lines.push_back(lineFrom(INADDR_LOOPBACK, port));
+        EXPECT_EQ(send(lines.back(), start.data(), start.size(), MSG_NOSIGNAL), static_cast<ssize_t>(start.size()));
+    }
+    return lines;
+}
+constexpr const char* kIsWell = "GET /healthz HTTP/1.1\r\nHost: x\r\nConnection: close\r\n\r\n";
+
+TEST_F(SecurityTest, OneAddressShutsNobodyOut) {
+    // It would hold each of the threads, and more.
+    School school(data(), School::Odd{.database = databaseOf(data()), .threads = 250});
+    const std::vector<int> lines = crowd(school.port(), 300);
+    const auto began = std::chrono::steady_clock::now();
+    const std::string heard = raw(school.port(), kIsWell, 10, INADDR_LOOPBACK + 1);
+    EXPECT_TRUE(heard.starts_with("HTTP/1.1 200")) << heard;
+    EXPECT_LT(std::chrono::steady_clock::now() - began, std::chrono::seconds(2));
+    // Its youngest stay, and it is answered itself.
+    EXPECT_TRUE(raw(school.port(), kIsWell, 10).starts_with("HTTP/1.1 200"));
+    std::ptrdiff_t open = 300;
+    for (int tenth = 0; tenth < 20 && open > 200; ++tenth) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        open = std::count_if(lines.begin(), lines.end(), isOpen);
+    }
+    EXPECT_LE(open, 200);
+    EXPECT_GE(open, 190);
+    for (const int line : lines)
+        close(line);
+}
+
+TEST_F(SecurityTest, BehindANamedProxyMayBeMany) {
+    School school(data(), School::Odd{.database = databaseOf(data()), .threads = 300, .proxies = {"127.0.0.1"}});
+    const std::vector<int> lines = crowd(school.port(), 250);
+    std::this_thread::sleep_for(std::chrono::seconds(1));
+    EXPECT_EQ(std::count_if(lines.begin(), lines.end(), isOpen), 250);
+    for (const int line : lines)
+        close(line);
+}
+
+TEST(SlowGuardTest, BeyondTheBoundsWhoIsSilentLongestGoes) {
+    const int listening = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in own = loopback(INADDR_LOOPBACK, 0);
+    socklen_t size = sizeof own;
+    ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
+    ASSERT_EQ(listen(listening, 16), 0);
+    ASSERT_EQ(getsockname(listening, reinterpret_cast<sockaddr*>(&own), &size), 0);
+    SlowGuard guard(listening, std::chrono::minutes(10), {3, 5, {"127.0.0.9"}});
+    std::vector<int> lines, taken;
+    // Each is looked at before the next comes.
+    const auto comes = [&](in_addr_t host) {
+        lines.push_back(lineFrom(INADDR_LOOPBACK + host, ntohs(own.sin_port)));
+        taken.push_back(accept(listening, nullptr, nullptr));
+        std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    };
+    const auto open = [&] {
+        std::string all;
+        for (const int line : lines)
+            all += isOpen(line) ? 'o' : '-';
+        return all;
+    };
+    for (int i = 0; i < 3; ++i)
+        comes(0);
+    EXPECT_EQ(open(), "ooo");
+    comes(0);
+    EXPECT_EQ(open(), "-ooo");
+    {
+        // One that is being answered stays, and the next after it goes.
+        sockaddr_in other{};
+        size = sizeof other;
+        ASSERT_EQ(getsockname(lines[1], reinterpret_cast<sockaddr*>(&other), &size), 0);
+        const SlowGuard::Working working(guard, fmt::format("127.0.0.1 {}", ntohs(other.sin_port)));
+        comes(0);
+        EXPECT_EQ(open(), "-o-oo");
+        comes(1), comes(2);
+        EXPECT_EQ(open(), "-o-oooo");
+        comes(3);
+        EXPECT_EQ(open(), "-o--oooo") << "of all";
+        comes(0);
+        EXPECT_EQ(open(), "-o---oooo");
+    }
+    // A proxy's are bounded by the room alone.
+    for (const std::vector<int>* all : {&lines, &taken})
+        for (const int line : *all)
+            close(line);
+    lines.clear(), taken.clear();
+    for (int i = 0; i < 5; ++i)
+        comes(8);
+    EXPECT_EQ(open(), "ooooo");
+    comes(8);
+    EXPECT_EQ(open(), "-ooooo");
+    for (const std::vector<int>* all : {&lines, &taken})
+        for (const int line : *all)
+            close(line);
+    close(listening);
 }
 
 TEST_F(SecurityTest, ConnectionsThatAreNotTheServersAreLeftAlone) {

@@ -7,11 +7,11 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/app/assessment/assessment_json.h"
-#include "handpiece/app/assessment/csv_cell.h"
 #include "handpiece/app/assessment/found_work.h"
 #include "handpiece/app/assessment/side_by_side.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/any_error.h"
+#include "handpiece/base/core/csv_cell.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
@@ -22,6 +22,7 @@ namespace handpiece::assessment {
 namespace {
 
 namespace fs = std::filesystem;
+using core::csvCell;
 using measures::Request;
 
 /// Stands for the hash of an exercise that a piece of work is not held against.

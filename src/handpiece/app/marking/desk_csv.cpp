@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <set>
 
-#include "handpiece/app/assessment/csv_cell.h"
 #include "handpiece/app/report/assessment_report.h"
+#include "handpiece/base/core/csv_cell.h"
 
 namespace handpiece::marking {
 namespace {
@@ -22,7 +22,7 @@ std::string number(const std::optional<double>& value) {
 std::string csvLine(const std::vector<std::string>& cells) {
     std::string line;
     for (std::size_t i = 0; i < cells.size(); ++i)
-        line += (i > 0 ? "," : "") + assessment::csvCell(cells[i]);
+        line += (i > 0 ? "," : "") + core::csvCell(cells[i]);
     return line + "\r\n";
 }
 

@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-#include "handpiece/app/assessment/csv_cell.h"
+#include "handpiece/base/core/csv_cell.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/package.h"
 
@@ -11,7 +11,7 @@ namespace handpiece::tables {
 namespace {
 
 std::string cellOf(const Column& column, std::size_t row) {
-    if (const auto* texts = std::get_if<Texts>(&column.values)) return assessment::csvCell((*texts)[row]);
+    if (const auto* texts = std::get_if<Texts>(&column.values)) return core::csvCell((*texts)[row]);
     if (const auto* whole = std::get_if<Whole>(&column.values)) return fmt::format("{}", (*whole)[row]);
     const std::optional<double>& value = std::get<Numbers>(column.values)[row];
     return value ? fmt::format("{}", *value) : std::string();
@@ -27,7 +27,7 @@ std::size_t Table::rows() const {
 std::string toCsv(const Table& table) {
     std::string out;
     for (std::size_t c = 0; c < table.columns.size(); ++c)
-        out += (c > 0 ? "," : "") + assessment::csvCell(table.columns[c].name);
+        out += (c > 0 ? "," : "") + core::csvCell(table.columns[c].name);
     out += "\r\n";
     for (std::size_t row = 0; row < table.rows(); ++row) {
         for (std::size_t c = 0; c < table.columns.size(); ++c) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "handpiece/base/core/csv_cell.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/large_package.h"
 #include "handpiece/school/store/books_accounts.h"
@@ -13,27 +14,12 @@
 namespace handpiece::school {
 namespace {
 
-/// As a spreadsheet program reads it, and takes for no formula.
-void addCell(std::string& csv, const std::string& text) {
-    const bool isFormula = !text.empty() && std::string_view("=+@\t").find(text[0]) != std::string_view::npos;
-    if (text.find_first_of(",;\"\r\n") == std::string::npos && !isFormula) {
-        csv += text;
-        return;
-    }
-    csv += isFormula ? "\"'" : "\"";
-    for (const char c : text) {
-        if (c == '"') csv += '"';
-        csv += c;
-    }
-    csv += '"';
-}
-
 std::string csvOf(const BookTable& table) {
     std::string csv = "\xef\xbb\xbf";
     const auto add = [&csv](const std::vector<std::string>& row) {
         for (std::size_t i = 0; i < row.size(); ++i) {
             if (i > 0) csv += ',';
-            addCell(csv, row[i]);
+            csv += core::csvCell(row[i]);
         }
         csv += "\r\n";
     };

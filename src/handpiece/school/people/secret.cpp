@@ -124,15 +124,17 @@ std::string typedStationCode(std::string_view typed) {
     return code;
 }
 
-std::string requestTokenOf(std::string_view loginToken) {
+std::string sealOf(std::string_view key, std::string_view text) {
     requireSodium();
-    static constexpr std::string_view kPurpose = "handpiece request token";
     std::array<unsigned char, 32> hash{};
-    // Keyed by the token, of which it keeps 64 bytes at most: ours has as many.
-    crypto_generichash(hash.data(), hash.size(), reinterpret_cast<const unsigned char*>(kPurpose.data()),
-                       kPurpose.size(), reinterpret_cast<const unsigned char*>(loginToken.data()),
-                       std::min<std::size_t>(loginToken.size(), crypto_generichash_KEYBYTES_MAX));
+    crypto_generichash(hash.data(), hash.size(), reinterpret_cast<const unsigned char*>(text.data()), text.size(),
+                       reinterpret_cast<const unsigned char*>(key.data()),
+                       std::min<std::size_t>(key.size(), crypto_generichash_KEYBYTES_MAX));
     return hexOfBytes(hash.data(), hash.size());
+}
+
+std::string requestTokenOf(std::string_view loginToken) {
+    return sealOf(loginToken, "handpiece request token");
 }
 
 bool isSameSecret(std::string_view a, std::string_view b) {

@@ -27,6 +27,8 @@ void requireGoodPassword(std::string_view password, std::string_view login);
 [[nodiscard]] std::string newStationCode();
 /// As typed: small letters, spaces and missing hyphens count as the code they mean.
 [[nodiscard]] std::string typedStationCode(std::string_view typed);
+/// Of this text, by whoever has the key (up to 64 bytes of it count): 64 hexadecimal digits.
+[[nodiscard]] std::string sealOf(std::string_view key, std::string_view text);
 /// Proves that a form came from a page of this log-in: made from its token, and does not tell it.
 [[nodiscard]] std::string requestTokenOf(std::string_view loginToken);
 /// In the same time wherever they differ.

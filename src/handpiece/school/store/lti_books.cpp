@@ -10,8 +10,6 @@
 namespace handpiece::school {
 namespace {
 
-constexpr Milliseconds kBegunMs = 600'000;
-constexpr std::int64_t kMostBegun = 10'000;
 constexpr const char* kPlatformColumns =
     "SELECT id, issuer, client, auth_address, token_address, keys_address, deployments, lists FROM "
     "lti_platforms";
@@ -81,28 +79,15 @@ std::optional<LtiPlatform> LtiBooks::platform(const std::string& id) const {
     return platformOf(row);
 }
 
-void LtiBooks::begin(const std::string& state, const std::string& nonce, const std::string& platform,
-                     Milliseconds now) {
+bool LtiBooks::isFirst(const std::string& state, const std::string& platform, Milliseconds expires, Milliseconds now) {
     Transaction transaction(*state_.database);
     state_.run("DELETE FROM lti_states WHERE expires <= $1", now);
-    if (state_.database->number("SELECT count(*) FROM lti_states") >= kMostBegun)
-        throw invalid("time to log in", "", "too many log-ins are under way: try again in some minutes");
-    state_.run("INSERT INTO lti_states (hash, platform, nonce_hash, expires) VALUES ($1, $2, $3, $4)", sha256(state),
-               platform, sha256(nonce), now + kBegunMs);
+    const bool isNew = state_.any(
+        "INSERT INTO lti_states (hash, platform, nonce_hash, expires) VALUES ($1, $2, '', $3) ON CONFLICT DO NOTHING "
+        "RETURNING hash",
+        sha256(state), platform, expires);
     transaction.commit();
-}
-
-std::optional<LtiBooks::Begun> LtiBooks::take(const std::string& state, Milliseconds now) {
-    std::optional<Begun> begun;
-    Transaction transaction(*state_.database);
-    {
-        Statement row =
-            state_.ask("DELETE FROM lti_states WHERE hash = $1 RETURNING platform, nonce_hash, expires", sha256(state));
-        while (row.next())
-            if (row.integer(2) > now) begun = Begun{row.text(0), row.text(1)};
-    }
-    transaction.commit();
-    return begun;
+    return isNew;
 }
 
 std::optional<Person> LtiBooks::personOn(const LtiPlatform& p, const std::string& subject) const {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What the books know of learning platforms: who they are, log-ins that are under way, whose grades go where, and
-/// those that wait to go. docs/school-lti.md.
+/// What the books know of learning platforms: who they are, which launches came, whose grades go where, and those that
+/// wait to go. docs/school-lti.md.
 
 #include <cstdint>
 #include <optional>
@@ -55,13 +55,9 @@ class LtiBooks : public BooksRoom {
     [[nodiscard]] std::optional<LtiPlatform> platform(const std::string& issuer, const std::string& client) const;
     [[nodiscard]] std::optional<LtiPlatform> platform(const std::string& id) const;
 
-    /// Kept as hashes. Those that are too old go; at most 10,000 wait at a time ("books-invalid").
-    void begin(const std::string& state, const std::string& nonce, const std::string& platform, Milliseconds now);
-    struct Begun {
-        std::string platform{}, nonceHash{};
-    };
-    /// Once: it is gone then. None where it is unknown or older than ten minutes.
-    std::optional<Begun> take(const std::string& state, Milliseconds now);
+    /// A launch that the platform vouches for, by its state, which is kept as a hash until it is worth nothing any
+    /// more. False: it came before.
+    bool isFirst(const std::string& state, const std::string& platform, Milliseconds expires, Milliseconds now);
 
     /// Whom this platform calls so: by its own table, else, where it has the school's lists, by the external id.
     [[nodiscard]] std::optional<Person> personOn(const LtiPlatform& platform, const std::string& subject) const;

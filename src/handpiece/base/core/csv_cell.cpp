@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "handpiece/app/assessment/csv_cell.h"
+#include "handpiece/base/core/csv_cell.h"
 
 #include <string_view>
 
-namespace handpiece::assessment {
+namespace handpiece::core {
 namespace {
 
 bool isNumber(const std::string& text) {
@@ -16,7 +16,7 @@ bool isNumber(const std::string& text) {
 std::string csvCell(std::string text) {
     if (!text.empty() && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos && !isNumber(text))
         text.insert(text.begin(), '\'');
-    if (text.find_first_of(",\"\r\n") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' '))
+    if (text.find_first_of(",;\"\r\n") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' '))
         return text;
     std::string quoted = "\"";
     for (const char c : text) {
@@ -26,4 +26,4 @@ std::string csvCell(std::string text) {
     return quoted + '"';
 }
 
-}  // namespace handpiece::assessment
+}  // namespace handpiece::core

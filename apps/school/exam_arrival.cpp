@@ -207,6 +207,9 @@ std::vector<std::string> doubtsOf(Books& books, const school::ExamSitting& sitti
         doubts.push_back("that an invigilator confirmed the identity is its station's word: its pack is of before");
     if (sitting.confirmation < 0)
         doubts.push_back("the code that confirmed the identity had been used for another beginning");
+    for (const Books::Alike& one : books.alike(sitting.id))
+        doubts.push_back(fmt::format("{} % of its motion is that of {}'s work, {}", one.percent, one.person,
+                                     one.attempt.substr(0, 8)));
     for (std::string& one : exams.doubtsOf(sitting.id))
         doubts.push_back(std::move(one));
     for (const school::AuditLine& line : books.audit(0, 10'000, sitting.station))

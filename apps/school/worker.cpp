@@ -103,7 +103,10 @@ school::Score Worker::heard(school::Books& books, school::Job& job, bool& isLost
     };
     sandboxed::Proof proof = sandboxed::prove(*attempt, files, text->text, examNotes(books, *attempt), progress);
     for (std::size_t i = 0; i < attempt->files.size(); ++i)
-        if (!proof.contents[i].empty()) books.keepContent(attempt->files[i], proof.contents[i]);
+        if (!proof.contents[i].empty()) {
+            books.keepContent(attempt->files[i], proof.contents[i]);
+            books.keepSketch(attempt->files[i], proof.sketches[i]);
+        }
     if (ExamBooks(books).sitting(attempt->attempt.id))
         ExamBooks(books).setDoubts(attempt->attempt.id, proof.doubts, books.sharedTime(clock_()));
     if (const auto other = books.otherPersonWith(job.attempt))

@@ -55,7 +55,7 @@ constexpr const char* kDoubts[] = {
     "school-exam-doubt.given-up",          "school-exam-doubt.never-heard",     "school-exam-doubt.late",
     "school-exam-doubt.another-recording", "school-exam-doubt.not-handed-over", "school-exam-doubt.too-fast",
     "school-exam-doubt.locked-used",       "school-exam-doubt.not-comparable",  "school-exam-doubt.chain-changed",
-    "school-exam-doubt.not-confirmed",     "school-exam-doubt.confirmed-twice",
+    "school-exam-doubt.not-confirmed",     "school-exam-doubt.confirmed-twice", "school-exam-doubt.alike",
 };
 
 std::vector<std::string> told(const std::vector<std::string>& doubts) {

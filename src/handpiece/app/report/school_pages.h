@@ -43,10 +43,12 @@ struct OtherLogIns {
 [[nodiscard]] std::string personPage(
     const Looker& who, const std::string& person, const Names& names,
     const std::vector<std::pair<school::PushedAttempt, std::optional<school::Score>>>& work);
-/// One attempt: what the server made of it, what its station said, every criterion, marks and comments.
+/// One attempt: what the server made of it, what its station said, every criterion, marks and comments; for who looks
+/// into it, others' works that it is like.
 [[nodiscard]] std::string attemptPage(const Looker& who, const school::PushedAttempt& attempt, const Names& names,
                                       const std::vector<school::Score>& scores, const std::vector<school::Mark>& marks,
-                                      const std::vector<school::Comment>& comments);
+                                      const std::vector<school::Comment>& comments,
+                                      const std::vector<school::Books::Alike>& alike = {});
 /// What cannot be shown, and why.
 [[nodiscard]] std::string refusalPage(const std::string& what, const std::string& remedy);
 

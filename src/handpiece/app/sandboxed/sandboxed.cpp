@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/proving/likeness.h"
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/engine_revision.h"
@@ -46,7 +47,9 @@ class Said {
     }
     [[nodiscard]] std::size_t count(const char* key) const { return countOf(at(key)); }
     [[nodiscard]] std::vector<std::string> texts(const char* key, std::size_t mostTexts, std::size_t most) const {
-        const Json& list = at(key);
+        return textsOf(at(key), mostTexts, most);
+    }
+    static std::vector<std::string> textsOf(const Json& list, std::size_t mostTexts, std::size_t most) {
         if (!list.is_array() || list.size() > mostTexts) throw noAnswer();
         std::vector<std::string> all;
         for (const Json& one : list)
@@ -178,10 +181,20 @@ Proof prove(const school::PushedAttempt& pushed, const Files& files, const std::
         if (proof.contents.size() != files.sessions.size()) throw noAnswer();
         for (const std::string& one : proof.contents)
             if (!one.empty() && !isHash(one, 64)) throw noAnswer();
+        const Json& sketches = said.at("sketches");
+        if (!sketches.is_array() || sketches.size() != files.sessions.size()) throw noAnswer();
+        for (const Json& one : sketches) {
+            proof.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
+            for (const std::string& hash : proof.sketches.back())
+                if (!isHash(hash, 16)) throw noAnswer();
+        }
         proof.doubts = said.texts("doubts", 1000, 1000);
     } catch (const core::Error& e) {
         if (!sandbox::isFault(e) || e.id() == "sandbox-exercise") throw;
-        proof = {refusedFor(e), std::vector<std::string>(files.sessions.size()), {}};
+        proof = {refusedFor(e),
+                 std::vector<std::string>(files.sessions.size()),
+                 std::vector<std::vector<std::string>>(files.sessions.size()),
+                 {}};
         if (exam) proof.doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
     }
     proof.score.attempt = a.id, proof.score.engine = core::kEngineRevision;

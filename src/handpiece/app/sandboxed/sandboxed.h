@@ -39,7 +39,8 @@ struct ExamNotes {
 struct Proof {
     school::Score score{};
     std::vector<std::string> contents{};  ///< by session, its inputs as one number; empty: nothing was done in it
-    std::vector<std::string> doubts{};    ///< of its exam, as proving::recordingDoubts()
+    std::vector<std::vector<std::string>> sketches{};  ///< by session: proving::motionSketch()
+    std::vector<std::string> doubts{};                 ///< of its exam, as proving::recordingDoubts()
 };
 /// As proving::prove(), of an attempt that was pushed; `rubric` is its text. Of `score`, `attempt` and `rubric` are the
 /// caller's. Never throws for a session that cannot be read: it is refused, as one is that ends its reader. What is

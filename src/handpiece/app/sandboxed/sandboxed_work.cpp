@@ -11,6 +11,7 @@
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/scoring.h"
 #include "handpiece/app/proving/exam_check.h"
+#include "handpiece/app/proving/likeness.h"
 #include "handpiece/app/proving/proving.h"
 #include "handpiece/app/report/assessment_report.h"
 #include "handpiece/app/report/review.h"
@@ -50,6 +51,14 @@ std::string contentOf(const std::filesystem::path& session) {
     }
 }
 
+std::vector<std::string> sketchOf(const std::filesystem::path& session) {
+    try {
+        return proving::motionSketch(session);
+    } catch (const core::Error&) {
+        return {};
+    }
+}
+
 std::vector<std::string> doubtsOf(const Json& exam, std::span<const std::filesystem::path> sessions) {
     try {
         std::vector<exam::Entry> entries;
@@ -79,9 +88,9 @@ Answer prove(const Json& asked, const core::Progress& progress) {
         return read;
     });
     const std::vector<std::filesystem::path> sessions = sessionsOf(asked);
-    Json contents = Json::array();
+    Json contents = Json::array(), sketches = Json::array();
     for (const std::filesystem::path& one : sessions)
-        contents.push_back(contentOf(one));
+        contents.push_back(contentOf(one)), sketches.push_back(sketchOf(one));
     school::PushedAttempt pushed;
     school::Attempt& a = pushed.attempt;
     const Json& of = asked.at("attempt");
@@ -100,6 +109,7 @@ Answer prove(const Json& asked, const core::Progress& progress) {
                     {"borderline", s.borderline},
                     {"result", s.result},
                     {"contents", contents},
+                    {"sketches", sketches},
                     {"doubts", doubts}})};
 }
 

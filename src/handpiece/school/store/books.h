@@ -245,6 +245,15 @@ class Books {
                                                         const std::string& assignment = {}) const;
     /// What a file holds, whatever its bytes: the hash of its inputs.
     void keepContent(const std::string& file, const std::string& inputs);
+    /// And of its motion the least hashes of its stretches, so that one is found that is nearly the same.
+    void keepSketch(const std::string& file, const std::vector<std::string>& hashes);
+    /// Works of other persons of which this attempt's recordings have at least a quarter of these, most first, five at
+    /// most: what a teacher should look at. It is no proof, and says nothing of who was first.
+    struct Alike {
+        std::string attempt{}, person{};
+        std::int64_t percent = 0;  ///< of the smaller one's
+    };
+    [[nodiscard]] std::vector<Alike> alike(const std::string& attempt) const;
     /// Another person whose attempt has one of this one's sessions, and whose station delivered its bytes before this
     /// one's did: a session is one person's, and to know a file's hash is not to have it. None: nobody.
     [[nodiscard]] std::optional<std::string> otherPersonWith(const std::string& attempt) const;

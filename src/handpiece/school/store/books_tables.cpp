@@ -50,6 +50,7 @@ constexpr std::array kListed = {
            "id", "person = $1"},
     Listed{"attempt_files", "t attempt, i place, t file", "attempt, place", HANDPIECE_OF_ATTEMPTS},
     Listed{"contents", "t file, t inputs", "file", nullptr},
+    Listed{"sketches", "t file, t hash", "file, hash", nullptr},
     Listed{"deliveries", "t file, t station, i made", "file, station", nullptr},
     Listed{"judgements", "t attempt, r percent, t words, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
     Listed{"comments", "t id, t attempt, t author, t words, r x_mm, r y_mm, r z_mm, r t_s, i made", "id",

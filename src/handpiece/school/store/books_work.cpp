@@ -252,6 +252,33 @@ void Books::keepContent(const std::string& file, const std::string& inputs) {
     transaction.commit();
 }
 
+void Books::keepSketch(const std::string& file, const std::vector<std::string>& hashes) {
+    if (hashes.empty()) return;
+    Transaction transaction(*state_->database, Database::Access::beside);
+    for (const std::string& hash : hashes)
+        state_->run("INSERT INTO sketches (file, hash) VALUES ($1, $2) ON CONFLICT DO NOTHING", file, hash);
+    transaction.commit();
+}
+
+std::vector<Books::Alike> Books::alike(const std::string& attempt) const {
+    constexpr std::int64_t kLeastPercent = 25, kMost = 5;
+    std::vector<Alike> all;
+    Statement rows = state_->ask(
+        "WITH own AS (SELECT DISTINCT s.hash FROM attempt_files f JOIN sketches s ON s.file = f.file WHERE f.attempt = "
+        "$1), shared AS (SELECT t.id, t.person, count(DISTINCT s.hash) AS n FROM own o JOIN sketches s ON s.hash = "
+        "o.hash JOIN attempt_files f ON f.file = s.file JOIN attempts t ON t.id = f.attempt WHERE t.person <> (SELECT "
+        "person FROM attempts WHERE id = $1) GROUP BY t.id, t.person), compared AS (SELECT h.id, h.person, 100 * h.n / "
+        "(SELECT CASE WHEN a.n < b.n THEN a.n ELSE b.n END FROM (SELECT count(*) AS n FROM own) a, (SELECT "
+        "count(DISTINCT s.hash) AS n FROM attempt_files f JOIN sketches s ON s.file = f.file WHERE f.attempt = h.id) "
+        "b) "
+        "AS percent FROM shared h) SELECT id, person, percent FROM compared WHERE percent >= $2 ORDER BY percent DESC, "
+        "id LIMIT $3",
+        attempt, kLeastPercent, kMost);
+    while (rows.next())
+        all.push_back({rows.text(0), rows.text(1), rows.integer(2)});
+    return all;
+}
+
 std::optional<std::string> Books::otherPersonWith(const std::string& attempt) const {
     Statement row = state_->ask(
         "SELECT a.person FROM attempt_files f JOIN attempts t ON t.id = f.attempt JOIN attempt_files g ON g.file = "

@@ -18,15 +18,7 @@ using school::Action;
 using school::ExamBooks;
 using school::Relation;
 
-Relation relationTo(const Visit& v, const school::ExamSitting& sitting) {
-    Relation relation;
-    relation.isOwn = sitting.person == v.person.code;
-    if (const auto assignment = v.books.assignment(sitting.exam))
-        relation.inClass = roleIn(v.books, assignment->schoolClass, v.person.code);
-    return relation;
-}
-
-/// The last score of the server's; of one's own only what is confirmed.
+/// The last score of the server's.
 std::optional<school::Score> scoreOf(const Visit& v, const std::string& id) {
     const std::vector<school::Score> scores = v.books.scoresOf(id);
     return scores.empty() ? std::nullopt : std::optional(scores.back());
@@ -37,9 +29,6 @@ std::optional<school::Score> scoreOf(const Visit& v, const std::string& id) {
 bool isExam(const Visit& v, const std::string& attempt) {
     return ExamBooks(v.books).sitting(attempt).has_value();
 }
-bool isUndecidedExam(const Visit& v, const std::string& attempt) {
-    return isExam(v, attempt) && ExamBooks(v.books).decisionsOf(attempt).empty();
-}
 
 Page examOf(const Visit& v, const std::string& id, const std::filesystem::path&) {
     ExamBooks exams(v.books);
@@ -48,26 +37,28 @@ Page examOf(const Visit& v, const std::string& id, const std::filesystem::path&)
     const Relation relation = relationToClass(v, assignment->schoolClass);
     // Those who mark it blind see it without names.
     if (!may(v, Action::seeClass, relation) && !may(v, Action::markBlind, relation)) return notYours();
-    const bool seesAll = may(v, Action::seeMarks, relation);
+    const school::Visible others = visibleIn(v, relation);
     report::ExamView view;
-    view.exam = *assignment, view.settings = *exams.settings(id), view.showsVerdicts = seesAll;
+    view.exam = *assignment, view.settings = *exams.settings(id), view.showsVerdicts = others.decisions;
     if (const auto pack = exams.newestPack(id)) view.packVersion = pack->version;
     const std::vector<school::ExamSitting> sittings = exams.sittingsOf(id);
+    Sight sight(v);
     for (const school::ExamCandidate& candidate : exams.candidates(id)) {
         report::ExamRow row{candidate, {}, {}, 0, {}};
         for (const school::ExamSitting& one : sittings)
             if (one.person == candidate.person) row.sitting = one;
         if (row.sitting) {
-            row.score = scoreOf(v, row.sitting->id);
-            if (seesAll) row.doubts = doubtsOf(v.books, *row.sitting).size();
+            const school::Visible seen = sight.of(workOf(*row.sitting));
+            if (seen.worth) row.score = scoreOf(v, row.sitting->id);
+            if (seen.doubts) row.doubts = doubtsOf(v.books, *row.sitting).size();
             row.verdict = school::verdictOf(exams.decisionsOf(row.sitting->id));
             row.isAppealed = school::hasOpenAppeal(exams.decisionsOf(row.sitting->id));
         }
         // Who marks blind sees what they are asked to mark.
-        if (seesAll || row.isAppealed) view.rows.push_back(std::move(row));
+        if (others.decisions || row.isAppealed) view.rows.push_back(std::move(row));
     }
     report::Names names{{v.person.code, v.person.name}};
-    if (may(v, Action::seeName, relation))
+    if (others.whose)
         for (const report::ExamRow& row : view.rows)
             if (const auto person = v.books.person(row.candidate.person)) names[person->code] = person->name;
     noteLook(v, "exam seen", "", id);
@@ -77,37 +68,34 @@ Page examOf(const Visit& v, const std::string& id, const std::filesystem::path&)
 Page sittingOf(const Visit& v, const std::string& id, const std::filesystem::path&) {
     ExamBooks exams(v.books);
     const auto sitting = exams.sitting(id);
-    const Relation relation = sitting ? relationTo(v, *sitting) : Relation{};
-    if (!sitting || !may(v, Action::seeAttempt, relation)) return notYours();
+    const school::Visible seen = sitting ? visibleOf(v, workOf(*sitting)) : school::Visible{};
+    if (!seen.exists) return notYours();
+    const Relation relation = relationTo(v, workOf(*sitting));
     const std::vector<school::ExamDecision> decisions = exams.decisionsOf(id);
-    const bool isDecided = !decisions.empty();
     report::SittingView view;
     view.sitting = *sitting;
     if (const auto assignment = v.books.assignment(sitting->exam)) view.title = assignment->title;
-    view.seesDecisions = may(v, Action::seeMarks, relation);
-    // A student sees what their work is worth, and what was doubted, when a teacher has decided.
-    view.seesWorth = !relation.isOwn || isDecided;
+    view.seesDecisions = seen.decisions, view.seesWorth = seen.worth;
     view.hasArrived = v.books.attempt(id).has_value();
     if (view.seesWorth) view.score = scoreOf(v, id);
-    if (view.seesWorth && view.seesDecisions) view.doubts = doubtsOf(v.books, *sitting);
+    if (seen.doubts) view.doubts = doubtsOf(v.books, *sitting);
     view.decisions = view.seesDecisions ? decisions : std::vector<school::ExamDecision>{};
     view.verdict = school::verdictOf(decisions);
     const bool isOpen = school::hasOpenAppeal(decisions);
     view.mayConfirm = !isOpen && may(v, Action::mark, relation) && view.seesDecisions;
-    view.mayAppeal = relation.isOwn && isDecided && !isOpen;
+    view.mayAppeal = relation.isOwn && !decisions.empty() && !isOpen;
     view.mayRemark = isOpen && may(v, Action::markBlind, relation) &&
                      std::none_of(decisions.begin(), decisions.end(),
                                   [&](const school::ExamDecision& d) { return d.person == v.person.code; });
     view.mayDecide = isOpen && may(v, Action::mark, relation) && view.seesDecisions;
-    if (!relation.isOwn) noteLook(v, "sitting seen", sitting->person, id);
-    report::Names names = namesFor(v, relation, sitting->person);
+    noteLookAt(v, "sitting seen", workOf(*sitting));
+    report::Names names = namesFor(v, seen, sitting->person);
     return {200, report::sittingPage(lookerOf(v), view, names)};
 }
 
 Page receiptOf(const Visit& v, const std::string& id, const std::filesystem::path& data) {
     const auto sitting = ExamBooks(v.books).sitting(id);
-    const Relation relation = sitting ? relationTo(v, *sitting) : Relation{};
-    if (!sitting || !may(v, Action::seeAttempt, relation) || !may(v, Action::seeMarks, relation)) return notYours();
+    if (!sitting || !visibleOf(v, workOf(*sitting)).decisions) return notYours();
     v.books.note({v.person.code, v.now}, "receipt made", id);
     Page page;
     page.body = exam::joined(receiptOf(v.books, *sitting, examKey(data), v.now));
@@ -119,7 +107,7 @@ Page decide(const Visit& v, const std::string& id, const char* kind, const std::
             const std::string& said) {
     ExamBooks exams(v.books);
     const auto sitting = exams.sitting(id);
-    const Relation relation = sitting ? relationTo(v, *sitting) : Relation{};
+    const Relation relation = sitting ? relationTo(v, workOf(*sitting)) : Relation{};
     const std::string_view which = kind;
     const bool isTheirs = which == "appeal"   ? relation.isOwn
                           : which == "remark" ? may(v, Action::markBlind, relation)

@@ -19,7 +19,5 @@ namespace handpiece::school_server {
                           const std::string& words);
 
 [[nodiscard]] bool isExam(const Visit& visit, const std::string& attempt);
-/// An exam's, and no teacher has decided yet: its student does not see what it is worth.
-[[nodiscard]] bool isUndecidedExam(const Visit& visit, const std::string& attempt);
 
 }  // namespace handpiece::school_server

@@ -54,7 +54,7 @@ std::optional<std::pair<Assigned, school::PushedAttempt>> toShow(const Visit& v,
     auto attempt = v.books.attempt(id);
     if (!attempt || attempt->assignment.empty() || !may(v, Action::mark, relationTo(v, *attempt))) return {};
     auto of = assignedFor(v, attempt->assignment, Action::mark);
-    if (!of || marksBlindStill(v, attempt->assignment)) return {};
+    if (!of || !visibleOf(v, *attempt).marks) return {};
     return std::pair(std::move(*of), std::move(*attempt));
 }
 
@@ -163,7 +163,7 @@ Page exemplarsOf(const Visit& v, const std::string& assignment, const Told& told
                               {all[i].who == v.person.code ? words()("school-teaching.yours")
                                : hasDone(all[i])           ? words()("school-teaching.given-in")
                                                            : words()("school-teaching.open")}};
-        if (isTeacher && !marksBlindStill(v, assignment))
+        if (isTeacher && seesMarks(v, *of))
             row.push_back({words()("school-teaching.consensus"), "/attempts/" + all[i].attempt + "/exemplar"});
         rows.push_back(std::move(row));
     }
@@ -209,7 +209,7 @@ Page exemplarsOf(const Visit& v, const std::string& assignment, const Told& told
                     words()("school-teaching.kappa"), words()("school-teaching.bias")},
                    lines, words()("school-teaching.with-consensus"));
     }
-    if (isTeacher && !marksBlindStill(v, assignment)) {
+    if (isTeacher && seesMarks(v, *of)) {
         page.heading(words()("school-teaching.choose-exemplar"));
         std::vector<std::vector<Cell>> works;
         for (const std::string& id : teaching.worksOf(assignment))

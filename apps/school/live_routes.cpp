@@ -171,7 +171,7 @@ Page classPage(Service& of, const Visit& v, const std::string& id) {
     noteWatching(of, v, works, false);
     std::vector<report::LiveTile> tiles;
     for (const auto& one : works)
-        tiles.push_back(tileOf(*one, may(v, Action::seeName, as.relation), v.now));
+        tiles.push_back(tileOf(*one, visibleIn(v, as.relation).whose, v.now));
     school::SchoolClass named{id};
     for (const school::SchoolClass& one : v.books.classes())
         if (one.id == id) named = one;
@@ -185,11 +185,11 @@ Page stationPage(Service& of, const Visit& v, const std::string& station) {
     const auto work = workAt(of, v, station, relation);
     if (!work) return notYours();
     noteWatching(of, v, {work}, true);
-    Page page{200,
-              report::liveStationPage(lookerOf(v), tileOf(*work, may(v, Action::seeName, relation), v.now),
-                                      work->classes.front()),
-              {},
-              {}};
+    Page page{
+        200,
+        report::liveStationPage(lookerOf(v), tileOf(*work, visibleIn(v, relation).whose, v.now), work->classes.front()),
+        {},
+        {}};
     page.runsScript = true;
     return page;
 }
@@ -237,7 +237,7 @@ std::vector<Entry> liveRoutes(Service* of) {
              if (!as.mayWatch) return notYours();
              const Works works = of->live.inClass(id, v.now);
              noteWatching(*of, v, works, false);
-             return feedOf(v, works, may(v, Action::seeName, as.relation), sinceOf(request));
+             return feedOf(v, works, visibleIn(v, as.relation).whose, sinceOf(request));
          })},
         {"GET", "/live/([0-9a-f]{32})",
          Shown([of](const Request& request, const Visit& v) { return stationPage(*of, v, request.matches[1]); })},
@@ -246,7 +246,7 @@ std::vector<Entry> liveRoutes(Service* of) {
              const auto work = workAt(*of, v, request.matches[1], relation);
              if (!work) return notYours();
              noteWatching(*of, v, {work}, true);
-             return feedOf(v, {work}, may(v, Action::seeName, relation), sinceOf(request));
+             return feedOf(v, {work}, visibleIn(v, relation).whose, sinceOf(request));
          })},
         {"GET", "/live/([0-9a-f]{32})/picture", Shown([of](const Request& request, const Visit& v) {
              school::Relation relation;

@@ -198,7 +198,7 @@ std::optional<std::pair<Assigned, school::PushedAttempt>> toAdjudicate(const Vis
     auto attempt = v.books.attempt(id);
     if (!attempt || attempt->assignment.empty() || !may(v, Action::mark, relationTo(v, *attempt))) return {};
     auto of = assignedFor(v, attempt->assignment, Action::mark);
-    if (!of || marksBlindStill(v, attempt->assignment)) return {};
+    if (!of || !visibleOf(v, *attempt).marks) return {};
     return std::pair(std::move(*of), std::move(*attempt));
 }
 
@@ -246,13 +246,16 @@ bool marksBlindStill(const Visit& v, const std::string& assignment) {
     });
 }
 
-ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt) {
-    const Teaching teaching(v.books);
-    if (!teaching.isReleased(attempt.attempt.id)) return {};
-    const Settled settled = settle(v.books.marksOf(attempt.attempt.id), teaching.differenceAllowed(attempt.assignment));
+bool seesMarks(const Visit& v, const Assigned& of) {
+    return visibleIn(v, of.relation, marksBlindStill(v, of.assignment.id)).marks;
+}
+
+SchoolsWord schoolsWordOn(const Visit& v, const school::PushedAttempt& attempt) {
+    const Settled settled =
+        settle(v.books.marksOf(attempt.attempt.id), Teaching(v.books).differenceAllowed(attempt.assignment));
     if (!settled.final) return {};
-    ReleasedMarks released{{*settled.final}, {}};
-    released.marks.front().marker = words()("school-teaching.school");
+    SchoolsWord word{{*settled.final}, {}};
+    word.marks.front().marker = words()("school-teaching.school");
     std::vector<school::Mark> from =
         settled.adjudication ? std::vector<school::Mark>{*settled.adjudication} : settled.markers;
     const auto text = v.books.assignment(attempt.assignment);
@@ -260,15 +263,15 @@ ReleasedMarks releasedMarks(const Visit& v, const school::PushedAttempt& attempt
     const rubric::Rubric rubric = version ? rubric::parseRubric(version->text, version->id) : rubric::Rubric{};
     for (const school::Mark& mark : from)
         for (const marking::Comment& one : marking::parseReturned(mark.marks, "the books").comments)
-            released.comments.push_back({{},
-                                         attempt.attempt.id,
-                                         one.criterion.empty() ? words()("school-teaching.whole-work")
-                                                               : report::criterionTitle(rubric, one.criterion),
-                                         one.text,
-                                         {},
-                                         {},
-                                         mark.made});
-    return released;
+            word.comments.push_back({{},
+                                     attempt.attempt.id,
+                                     one.criterion.empty() ? words()("school-teaching.whole-work")
+                                                           : report::criterionTitle(rubric, one.criterion),
+                                     one.text,
+                                     {},
+                                     {},
+                                     mark.made});
+    return word;
 }
 
 Page markingOf(const Visit& v) {
@@ -437,7 +440,7 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
     page.link("/classes/" + of->assignment.schoolClass + "/marking", words()("school-teaching.back-to-class"));
     page.link(at(assignment, "/agreement"), words()("school-teaching.agreement"));
     if (!told.text.empty()) page.paragraph(told.text, told.isWrong ? Tone::bad : Tone::good);
-    if (marksBlindStill(v, assignment)) {
+    if (!seesMarks(v, *of)) {
         page.paragraph(words()("school-teaching.give-in-first"), Tone::missing);
         page.link(at(assignment, "/marking"), words()("school-teaching.your-desk"));
         return {200, page.text()};
@@ -572,7 +575,7 @@ Page agreementOf(const Visit& v, const std::string& assignment) {
     const Teaching teaching(v.books);
     HtmlReport page = report::sitePage(words()("school-teaching.agreement-of", of->assignment.title), lookerOf(v));
     page.link(at(assignment, "/marks"), words()("school-teaching.back-to-marks", of->assignment.title));
-    if (marksBlindStill(v, assignment)) {
+    if (!seesMarks(v, *of)) {
         page.paragraph(words()("school-teaching.give-in-first"), Tone::missing);
         return {200, page.text()};
     }

@@ -36,7 +36,7 @@ Page classOf(const Visit& v, const std::string& id) {
     if (!may(v, Action::seeClass, relation)) return notYours();
     const school::ClassPage page = v.books.classPage(id);
     report::Names names{{v.person.code, v.person.name}};
-    if (may(v, Action::seeName, relation))
+    if (visibleIn(v, relation).whose)
         for (const school::Person& student : page.students)
             names[student.code] = student.name;
     noteLook(v, "class seen", "", id);
@@ -53,15 +53,15 @@ Page personOf(const Visit& v, const std::string& code) {
     // Of all that this person did, what the other may see.
     std::vector<std::pair<school::PushedAttempt, std::optional<school::Score>>> work;
     bool seesAny = code == v.person.code;
-    Relation last;
-    last.isOwn = seesAny;
+    school::Visible last;
+    Sight sight(v);
     for (school::PushedAttempt& one : v.books.attemptsOf(code)) {
-        const Relation relation = relationTo(v, one);
-        if (!may(v, Action::seeAttempt, relation)) continue;
-        seesAny = true, last = relation;
-        std::vector<school::Score> scores = v.books.scoresOf(one.attempt.id);
+        const school::Visible seen = sight.of(one);
+        if (!seen.exists) continue;
+        seesAny = true, last = seen;
+        std::vector<school::Score> scores;
+        if (seen.worth) scores = v.books.scoresOf(one.attempt.id);
         // No machine alone fails a person.
-        if (relation.isOwn && isUndecidedExam(v, one.attempt.id)) scores.clear();
         if (!scores.empty() && isExam(v, one.attempt.id)) scores.back().passed = "teacher";
         work.emplace_back(std::move(one), scores.empty() ? std::nullopt : std::optional(scores.back()));
     }
@@ -72,32 +72,29 @@ Page personOf(const Visit& v, const std::string& code) {
 
 Page attemptOf(const Visit& v, const std::string& id) {
     const auto attempt = v.books.attempt(id);
-    const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
-    if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
+    const school::Visible seen = attempt ? visibleOf(v, *attempt) : school::Visible{};
+    if (!seen.exists) return notYours();
     if (isExam(v, id)) return {303, {}, "/sittings/" + id};
-    if (!relation.isOwn) noteLook(v, "attempt seen", attempt->person, id);
-    const bool seesMarks = may(v, Action::seeMarks, relation);
+    noteLookAt(v, "attempt seen", *attempt);
     std::vector<school::Mark> marks;
     std::vector<school::Comment> comments;
-    if (seesMarks) comments = v.books.commentsOn(id);
-    if (relation.isOwn) {
-        // Their own once they are released.
-        ReleasedMarks released = releasedMarks(v, *attempt);
-        marks = std::move(released.marks);
-        for (school::Comment& one : released.comments)
-            comments.push_back(std::move(one));
-    } else if (seesMarks && !marksBlindStill(v, attempt->assignment)) {
+    if (seen.comments) comments = v.books.commentsOn(id);
+    if (seen.markers) {
         marks = v.books.marksOf(id);
+    } else if (seen.marks) {
+        SchoolsWord word = schoolsWordOn(v, *attempt);
+        marks = std::move(word.marks);
+        for (school::Comment& one : word.comments)
+            comments.push_back(std::move(one));
     }
-    return {200, report::attemptPage(lookerOf(v), *attempt, namesFor(v, relation, attempt->person),
-                                     v.books.scoresOf(id), marks, comments)};
+    return {200,
+            report::attemptPage(lookerOf(v), *attempt, namesFor(v, seen, attempt->person),
+                                seen.worth ? v.books.scoresOf(id) : std::vector<school::Score>{}, marks, comments)};
 }
 
 Page resultOf(const Visit& v, const std::string& id, Readings& readings) {
     const auto attempt = v.books.attempt(id);
-    const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
-    if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
-    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();
+    if (!attempt || !visibleOf(v, *attempt).worth) return notYours();
     const std::vector<school::Score> scores = v.books.scoresOf(id);
     if (scores.empty() || scores.back().result.empty()) return refused(words()("school.not-there"), 404);
     const school::Score& s = scores.back();
@@ -105,15 +102,14 @@ Page resultOf(const Visit& v, const std::string& id, Readings& readings) {
     const auto text = v.books.rubric(s.rubric);
     const std::string& exercise = result.identity.exerciseHash;
     if (!text || !v.books.pack(exercise)) return refused(words()("school.not-there"), 404);
-    if (!relation.isOwn) noteLook(v, "result seen", attempt->person, id);
+    noteLookAt(v, "result seen", *attempt);
     return {200, readings.studentReport(v.books, exercise, s.result, text->text)};
 }
 
 Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
     const auto attempt = v.books.attempt(id);
-    const Relation relation = attempt ? relationTo(v, *attempt) : Relation{};
-    if (!attempt || !may(v, Action::seeAttempt, relation)) return notYours();
-    if (relation.isOwn && isUndecidedExam(v, id)) return notYours();  // it has the points that were lost
+    const school::Visible seen = attempt ? visibleOf(v, *attempt) : school::Visible{};
+    if (!seen.recording || !seen.worth) return notYours();  // it has the points that were lost
     const bool isWhole = !attempt->files.empty() &&
                          std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
                              return core::isThere(v.books.files().path(file));
@@ -128,7 +124,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
         page.runsScript = true;
         return page;
     }
-    if (!relation.isOwn) noteLook(v, "review seen", attempt->person, id);
+    noteLookAt(v, "review seen", *attempt);
     Page page{200, std::move(answer.page), {}, {}};
     page.isReview = true;
     return page;

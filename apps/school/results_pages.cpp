@@ -16,7 +16,6 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/school/store/teaching.h"
-#include "school/exam_pages.h"
 #include "school/teaching.h"
 
 namespace handpiece::school_server {
@@ -30,6 +29,19 @@ using school::Outcome;
 using school::Teaching;
 using Tone = HtmlReport::Tone;
 
+/// Of what somebody may see what it is worth, and whose it is: an examiner has no curve of a person.
+struct Seen : Outcome {
+    school::Visible visible;
+};
+std::vector<Seen> seenOf(const Visit& v, std::vector<Outcome> outcomes) {
+    std::vector<Seen> seen;
+    Sight sight(v);
+    for (Outcome& one : outcomes)
+        if (const school::Visible visible = sight.of(one.pushed); visible.worth && visible.whose)
+            seen.push_back({std::move(one), visible});
+    return seen;
+}
+
 /// What may be compared: exercise and rubric by hash, device, motion scale.
 using Key = std::tuple<std::string, std::string, std::string, double>;
 struct Group {
@@ -38,9 +50,9 @@ struct Group {
 };
 
 /// Of work that the server scored whole.
-std::map<Key, Group> groupsOf(const std::vector<Outcome>& outcomes) {
+std::map<Key, Group> groupsOf(const std::vector<Seen>& outcomes) {
     std::map<Key, Group> groups;
-    for (const Outcome& one : outcomes) {
+    for (const Seen& one : outcomes) {
         if (!one.score || one.score->state != "proven" || !(one.score->maxScore > 0.0)) continue;
         const school::Attempt& a = one.pushed.attempt;
         Group& group = groups[{a.exerciseHash, one.score->rubric, a.device, a.motionScale}];
@@ -111,7 +123,7 @@ std::string rubricNameOf(const school::Books& books, std::map<std::string, std::
 }
 
 /// One row an attempt, and one a criterion of each: docs/formats/results-table.md.
-std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Outcome>& outcomes) {
+std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Seen>& outcomes) {
     const Teaching teaching(v.books);
     tables::Texts attempt, person, assignment, exercise, exerciseHash, rubricHash, rubricName, device, state, passed,
         reason, markVerdict;
@@ -122,7 +134,7 @@ std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Outcome>& 
     std::map<std::string, std::string> rubrics;
     std::map<std::string, double> allowed;
     std::map<std::pair<std::string, std::string>, std::int64_t> counted;
-    for (const Outcome& one : outcomes) {
+    for (const Seen& one : outcomes) {
         const school::Attempt& a = one.pushed.attempt;
         attempt.push_back(a.id), person.push_back(one.pushed.person), assignment.push_back(one.pushed.assignment);
         exercise.push_back(a.exercise), exerciseHash.push_back(a.exerciseHash), device.push_back(a.device);
@@ -131,7 +143,7 @@ std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Outcome>& 
         scale.push_back(a.motionScale), worked.push_back(a.workedS), limit.push_back(a.limitS);
         const bool isScored = one.score && one.score->maxScore > 0.0;
         state.push_back(one.score ? one.score->state : "provisional");
-        reason.push_back(one.score ? one.score->reason : "");
+        reason.push_back(one.score && one.visible.reason ? one.score->reason : "");
         rubricHash.push_back(one.score ? one.score->rubric : a.rubricHash);
         rubricName.push_back(rubricNameOf(v.books, rubrics, rubricHash.back()));
         const auto said = [&](tables::Numbers& into, double value) {
@@ -145,11 +157,13 @@ std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Outcome>& 
         const std::string& of = one.pushed.assignment;
         if (!allowed.contains(of)) allowed[of] = teaching.differenceAllowed(of);
         const Settled settled = settle(v.books.marksOf(a.id), allowed[of]);
-        const bool isReleased = teaching.isReleased(a.id), isMarked = settled.final && settled.final->maxPoints > 0.0;
+        const bool isReleased = teaching.isReleased(a.id);
         // Who is told of marks before they are out: nobody by this way.
-        mark.push_back(isMarked && isReleased ? std::optional(settled.final->points) : std::nullopt);
-        markMost.push_back(isMarked && isReleased ? std::optional(settled.final->maxPoints) : std::nullopt);
-        markVerdict.push_back(settled.final && isReleased ? settled.final->verdict : "");
+        const bool isTold = settled.final && isReleased && one.visible.marks,
+                   hasPoints = isTold && settled.final->maxPoints > 0.0;
+        mark.push_back(hasPoints ? std::optional(settled.final->points) : std::nullopt);
+        markMost.push_back(hasPoints ? std::optional(settled.final->maxPoints) : std::nullopt);
+        markVerdict.push_back(isTold ? settled.final->verdict : "");
         released.push_back(isReleased ? 1 : 0);
         if (!one.score || one.score->result.empty()) continue;
         for (const score::CriterionScore& c :
@@ -207,11 +221,11 @@ std::vector<tables::Table> tablesOf(const Visit& v, const std::vector<Outcome>& 
               {"critical", "", cCritical}}}};
 }
 
-std::string statementsFor(const Visit& v, const std::vector<Outcome>& outcomes, const std::string& home) {
+std::string statementsFor(const Visit& v, const std::vector<Seen>& outcomes, const std::string& home) {
     const Teaching teaching(v.books);
     std::map<std::string, std::vector<statements::Work>> byPerson;
     std::map<std::string, std::string> titles;
-    for (const Outcome& one : outcomes) {
+    for (const Seen& one : outcomes) {
         // What the server has not proven is nobody's result.
         if (!one.score || one.score->state != "proven") continue;
         statements::Work work{one.pushed.attempt, {}, {}};
@@ -224,7 +238,8 @@ std::string statementsFor(const Visit& v, const std::vector<Outcome>& outcomes, 
             titles[work.attempt.exerciseHash] = pack ? pack->title : std::string();
         }
         work.title = titles[work.attempt.exerciseHash];
-        if (teaching.isReleased(work.attempt.id)) {
+        work.tellsMarkers = one.visible.markers;
+        if (one.visible.marks && teaching.isReleased(work.attempt.id)) {
             const Settled settled =
                 settle(v.books.marksOf(work.attempt.id), teaching.differenceAllowed(one.pushed.assignment));
             const std::vector<school::Mark> given =
@@ -247,7 +262,7 @@ std::string statementsFor(const Visit& v, const std::vector<Outcome>& outcomes, 
     return all + "]\n";
 }
 
-Page exportOf(const Visit& v, const std::vector<Outcome>& outcomes, const std::string& what, const std::string& home,
+Page exportOf(const Visit& v, const std::vector<Seen>& outcomes, const std::string& what, const std::string& home,
               const std::string& name) {
     Page page;
     page.fileName = fmt::format("{}-{}", name, what);
@@ -266,7 +281,7 @@ Page exportOf(const Visit& v, const std::vector<Outcome>& outcomes, const std::s
         }
     } else {
         std::vector<report::ClassEntry> entries;
-        for (const Outcome& one : outcomes)
+        for (const Seen& one : outcomes)
             if (one.score && !one.score->result.empty())
                 entries.push_back({one.pushed.person, one.pushed.attempt.id, std::nullopt,
                                    assessment::parseResult(one.score->result, "the books")});
@@ -276,19 +291,10 @@ Page exportOf(const Visit& v, const std::vector<Outcome>& outcomes, const std::s
     return page;
 }
 
-/// Of a person's work what this one may see; none: nothing of it.
-std::optional<std::vector<Outcome>> visibleOf(const Visit& v, const std::string& person, bool withResults) {
-    std::vector<Outcome> seen;
-    bool isAny = person == v.person.code;
-    for (Outcome& one : Teaching(v.books).outcomesOf(person, withResults)) {
-        const school::Relation relation = relationTo(v, one.pushed);
-        // Whose it is must be theirs to know: an examiner has no curve of a person.
-        if (!may(v, Action::seeAttempt, relation) || !may(v, Action::seeName, relation)) continue;
-        isAny = true;
-        if (relation.isOwn && isUndecidedExam(v, one.pushed.attempt.id)) continue;
-        seen.push_back(std::move(one));
-    }
-    if (!isAny) return {};
+/// Of a person's work; none: nothing of it is theirs to see.
+std::optional<std::vector<Seen>> seenOfPerson(const Visit& v, const std::string& person, bool withResults) {
+    std::vector<Seen> seen = seenOf(v, Teaching(v.books).outcomesOf(person, withResults));
+    if (seen.empty() && person != v.person.code) return {};
     return seen;
 }
 
@@ -302,7 +308,7 @@ Page resultsOfClass(const Visit& v, const std::string& schoolClass, const std::s
         if (one.id == schoolClass) name = one.name;
     HtmlReport page = report::sitePage(words()("school-teaching.results-of", name), lookerOf(v));
     page.link("/classes/" + schoolClass, words()("school-teaching.back-to-class"));
-    const std::map<Key, Group> groups = groupsOf(Teaching(v.books).outcomes(schoolClass, false));
+    const std::map<Key, Group> groups = groupsOf(seenOf(v, Teaching(v.books).outcomes(schoolClass, false)));
     if (groups.empty()) page.paragraph(words()("class.no-results"), Tone::missing);
     for (const auto& [key, group] : groups) {
         page.heading(words()("school-teaching.curve-of", group.exercise));
@@ -310,7 +316,7 @@ Page resultsOfClass(const Visit& v, const std::string& schoolClass, const std::s
         std::vector<std::vector<HtmlReport::Cell>> rows;
         for (const auto& [person, percents] : group.percents) {
             std::string shown = person;
-            if (may(v, Action::seeName, relation))
+            if (visibleIn(v, relation).whose)
                 if (const auto one = v.books.person(person); one && !one->name.empty()) shown = one->name;
             rows.push_back({{shown, "/people/" + person + "/curves"},
                             {fmt::format("{}", percents.size())},
@@ -329,7 +335,7 @@ Page resultsOfClass(const Visit& v, const std::string& schoolClass, const std::s
 }
 
 Page curvesOf(const Visit& v, const std::string& person, const std::string& home) {
-    const auto seen = visibleOf(v, person, false);
+    const auto seen = seenOfPerson(v, person, false);
     if (!seen) return notYours();
     const auto one = v.books.person(person);
     const std::string shown = one && !one->name.empty() ? one->name : person;
@@ -361,11 +367,12 @@ Page curvesOf(const Visit& v, const std::string& person, const std::string& home
 Page exportOfClass(const Visit& v, const std::string& schoolClass, const std::string& what, const std::string& home) {
     if (!may(v, Action::seeClass, relationToClass(v, schoolClass))) return notYours();
     noteLook(v, "results exported", "", fmt::format("{} {}", schoolClass, what));
-    return exportOf(v, Teaching(v.books).outcomes(schoolClass, what != "statements.json"), what, home, schoolClass);
+    return exportOf(v, seenOf(v, Teaching(v.books).outcomes(schoolClass, what != "statements.json")), what, home,
+                    schoolClass);
 }
 
 Page exportOfPerson(const Visit& v, const std::string& person, const std::string& what, const std::string& home) {
-    const auto seen = visibleOf(v, person, what != "statements.json");
+    const auto seen = seenOfPerson(v, person, what != "statements.json");
     if (!seen) return notYours();
     if (person != v.person.code) noteLook(v, "results exported", person, what);
     return exportOf(v, *seen, what, home, person);

@@ -298,7 +298,7 @@ Page changeStandard(const Visit& v, const std::string& assignment, const Fields&
         content["round"] = round, content["judges"] = result.judges.size(), content["cut_percent"] = *result.cutPercent;
         if (result.spreadPercent) content["spread_percent"] = *result.spreadPercent;
         if (result.interval) content["interval_percent"] = {result.interval->low, result.interval->high};
-    } else if (method == "borderline" && !marksBlindStill(v, assignment)) {
+    } else if (method == "borderline" && seesMarks(v, *of)) {
         const standard::Borderline result =
             standard::borderlineRegression(ratedOf(teaching, *of), kBorderlineRating, kSeed);
         if (!result.cutPercent)

@@ -28,12 +28,14 @@ struct Assigned {
 [[nodiscard]] std::optional<Assigned> assignedFor(const Visit& visit, const std::string& id, school::Action action);
 /// Whoever has works of it to mark still sees nobody's marks before their own are in.
 [[nodiscard]] bool marksBlindStill(const Visit& visit, const std::string& assignment);
-/// Marks and comments as the attempt's own student sees them: none before they are released.
-struct ReleasedMarks {
+/// Whether they see what markers said of it.
+[[nodiscard]] bool seesMarks(const Visit& visit, const Assigned& of);
+/// Marks and comments as the attempt's own student sees them: settled, and no marker's.
+struct SchoolsWord {
     std::vector<school::Mark> marks;
     std::vector<school::Comment> comments;
 };
-[[nodiscard]] ReleasedMarks releasedMarks(const Visit& visit, const school::PushedAttempt& attempt);
+[[nodiscard]] SchoolsWord schoolsWordOn(const Visit& visit, const school::PushedAttempt& attempt);
 /// The tooth as the attempt leaves it, or why it is not shown.
 void addPicture(report::HtmlReport& page, const Visit& visit, const school::PushedAttempt& attempt,
                 const std::string& exercise, Readings& readings);

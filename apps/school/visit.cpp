@@ -5,6 +5,7 @@
 
 #include "handpiece/base/config/words.h"
 #include "handpiece/school/people/secret.h"
+#include "school/teaching.h"
 
 namespace handpiece::school_server {
 
@@ -70,14 +71,42 @@ Relation relationTo(const Visit& v, const school::PushedAttempt& p) {
     return relation;
 }
 
+school::PushedAttempt workOf(const school::ExamSitting& sitting) {
+    school::PushedAttempt work;
+    work.attempt.id = sitting.id, work.person = sitting.person, work.assignment = sitting.exam;
+    return work;
+}
+
+school::Visible Sight::of(const school::PushedAttempt& p) {
+    const bool isOwn = p.person == visit_.person.code;
+    const auto look = [&] {
+        const bool marksBlind = !isOwn && !p.assignment.empty() && marksBlindStill(visit_, p.assignment);
+        return school::Eyes{rolesOf(visit_.person), relationTo(visit_, p), marksBlind};
+    };
+    const school::Standing standing = school::standingOf(visit_.books, p.attempt.id);
+    // Of practice each is shared or not by itself.
+    if (p.assignment.empty()) return school::visibleOf(look(), standing);
+    const auto [place, isNew] = eyes_.try_emplace({p.assignment, isOwn});
+    if (isNew) place->second = look();
+    return school::visibleOf(place->second, standing);
+}
+
+school::Visible visibleOf(const Visit& v, const school::PushedAttempt& attempt) {
+    return Sight(v).of(attempt);
+}
+
+school::Visible visibleIn(const Visit& v, const Relation& relation, bool marksBlind) {
+    return school::visibleOf({rolesOf(v.person), relation, marksBlind}, {});
+}
+
 bool may(const Visit& v, Action action, const Relation& relation) {
     const std::vector<Role> roles = rolesOf(v.person);
     return school::may(roles, action, relation);
 }
 
-report::Names namesFor(const Visit& v, const Relation& relation, const std::string& person) {
+report::Names namesFor(const Visit& v, const school::Visible& seen, const std::string& person) {
     report::Names names{{v.person.code, v.person.name}};
-    if (may(v, Action::seeName, relation))
+    if (seen.whose)
         if (const auto one = v.books.person(person)) names[person] = one->name;
     return names;
 }
@@ -88,6 +117,10 @@ school::Act actOf(const Visit& v) {
 
 void noteLook(const Visit& v, const char* what, const std::string& about, const std::string& detail) {
     v.books.note(actOf(v), what, about, detail);
+}
+
+void noteLookAt(const Visit& v, const char* what, const school::PushedAttempt& attempt) {
+    if (attempt.person != v.person.code) noteLook(v, what, attempt.person, attempt.attempt.id);
 }
 
 Page notYours() {

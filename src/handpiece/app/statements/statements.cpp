@@ -132,7 +132,8 @@ class Writer {
         if (verdict == marks.end() || !verdict->is_string()) throw damaged("they do not say who passed");
         const std::string passed = verdict->get<std::string>();
         if (passed == "yes" || passed == "no") result["success"] = passed == "yes";
-        result["extensions"] = {{term("passed"), passed}, {term("marker"), returned.marker}};
+        result["extensions"] = {{term("passed"), passed}};
+        if (work.tellsMarkers) result["extensions"][term("marker")] = returned.marker;
         return statement(uuidOf(returned), verb("scored", "was marked in", "採点を受けた"), work, std::move(result),
                          returned.made);
     }

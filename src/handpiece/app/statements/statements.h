@@ -23,6 +23,7 @@ struct Work {
     school::Attempt attempt;
     std::string title{};
     std::vector<school::Returned> returned{};
+    bool tellsMarkers = true;  ///< who gave it back
 };
 
 /// A JSON array, UTF-8: of each attempt one statement "completed", and one "scored" of each marker who gave it back.

@@ -34,6 +34,7 @@ constexpr const char* kAbout =
     "tables/*.csv     each table of the server's books, the lines that are about them; open with any spreadsheet\n"
     "                 program. Times are milliseconds since 1970-01-01 (UTC). audit.csv: who looked at what, and "
     "when.\n"
+    "                 Not who marked it: marks are the school's.\n"
     "sessions/*.h5    recordings of their work, by their SHA-256 (HDF5; handpiece replay, or h5dump); which belongs "
     "to\n"
     "                 which attempt stands in tables/attempt_files.csv\n\n"

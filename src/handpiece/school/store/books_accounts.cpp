@@ -95,9 +95,9 @@ std::vector<AuditLine> BooksAccounts::auditBefore(std::int64_t number, std::size
                                                   const std::string& about) const {
     std::vector<AuditLine> all;
     Statement rows = state_.ask(
-        fmt::format("SELECT number, at, who, what, about, detail FROM audit WHERE number < $1 {} ORDER BY number DESC "
-                    "LIMIT $2",
-                    about.empty() ? "AND $3 = ''" : "AND about = $3")
+        fmt::format("SELECT number, at, who, what, CASE WHEN " HANDPIECE_TELLS_BLIND " THEN '' ELSE about END, detail "
+                    "FROM audit WHERE number < $1 {} ORDER BY number DESC LIMIT $2",
+                    about.empty() ? "AND $3 = ''" : "AND about = $3 AND NOT (" HANDPIECE_TELLS_BLIND ")")
             .c_str(),
         number > 0 ? number : std::numeric_limits<std::int64_t>::max(), most, about);
     while (rows.next())

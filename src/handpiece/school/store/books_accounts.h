@@ -31,7 +31,8 @@ class BooksAccounts : BooksRoom {
 
     [[nodiscard]] std::vector<Enrolment> enrolmentsOf(const std::string& person) const;
     [[nodiscard]] std::vector<Station> stations() const;
-    /// Before `number`, the newest first; `number` 0: from the newest on; empty `about`: all.
+    /// Before `number`, the newest first; `number` 0: from the newest on; empty `about`: all. Which work a marker had
+    /// under a code is left out, and not found by, until its marks are released.
     [[nodiscard]] std::vector<AuditLine> auditBefore(std::int64_t number, std::size_t most,
                                                      const std::string& about = {}) const;
     /// Of these books from their beginning, or from when they were restored: then stations send again what they sent.

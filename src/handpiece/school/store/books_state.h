@@ -43,6 +43,12 @@ inline constexpr const char* kCountingJob =
     "(SELECT l.job FROM scores l LEFT JOIN counting k ON k.assignment = t.assignment AND k.campaign = l.campaign "
     "WHERE l.attempt = t.id ORDER BY CASE WHEN k.campaign IS NULL THEN 0 ELSE 1 END DESC, l.job DESC LIMIT 1)";
 
+/// A line of the audit that tells which work a marker had under a code, while that is not to be told
+/// (Visible::behindCode).
+#define HANDPIECE_TELLS_BLIND                                                                                        \
+    "(what = 'work seen blind' OR what = 'give in marks' OR (what = 'mark' AND detail = 'blind')) AND about NOT IN " \
+    "(SELECT attempt FROM releases)"
+
 struct Books::State {
     std::unique_ptr<Database> database;
     ContentFiles files;

@@ -17,8 +17,8 @@ struct Listed {
     const char* columns;
     const char* order;
     const char* ofPerson;  ///< nullptr: nothing in it is of one person
-    /// In what a person is given, where that is less: no table tells a marker whose work it is, nor anybody what their
-    /// own is worth before it is decided or released.
+    /// In what a person is given, where that is less: visibleOf() in the words of the tables, which a test holds to it.
+    /// No table tells a marker whose work it is, nor a student who marked it.
     const char* ownColumns = nullptr;
 };
 #define HANDPIECE_OF_SITTINGS "sitting IN (SELECT id FROM exam_sittings WHERE person = $1)"
@@ -27,7 +27,8 @@ struct Listed {
 #define HANDPIECE_DECIDED_ATTEMPTS \
     HANDPIECE_OF_ATTEMPTS          \
     " AND attempt NOT IN (SELECT id FROM exam_sittings WHERE id NOT IN (SELECT sitting FROM exam_decisions))"
-#define HANDPIECE_RELEASED_ATTEMPTS HANDPIECE_OF_ATTEMPTS " AND attempt IN (SELECT attempt FROM releases)"
+#define HANDPIECE_RELEASED_ATTEMPTS HANDPIECE_DECIDED_ATTEMPTS " AND attempt IN (SELECT attempt FROM releases)"
+#define HANDPIECE_IS_BLIND "marker = $1 AND kind = 'blind' AND attempt NOT IN (SELECT attempt FROM releases)"
 constexpr std::array kListed = {
     Listed{"people", "t code, i made, i erased", "code", "code = $1"},
     Listed{"identities", "t person, t name, t login, t external", "person", "person = $1"},
@@ -58,8 +59,12 @@ constexpr std::array kListed = {
     Listed{"shares", "t attempt, i made", "attempt", HANDPIECE_OF_ATTEMPTS},
     Listed{"marks", "t id, t attempt, t marker, t kind, t verdict, r points, r max_points, t marks, i made", "id",
            "marker = $1 OR (" HANDPIECE_RELEASED_ATTEMPTS ")",
-           "t id, t CASE WHEN kind = 'blind' AND attempt NOT IN (SELECT attempt FROM releases) THEN '' ELSE attempt "
-           "END AS attempt, t marker, t kind, t verdict, r points, r max_points, t marks, i made"},
+           // What a marker said has hashes of the work in it, and their code.
+           "t id, t CASE WHEN " HANDPIECE_IS_BLIND
+           " THEN '' ELSE attempt END AS attempt, t CASE WHEN marker = $1 THEN marker ELSE '' END AS marker, t kind, "
+           "t verdict, r points, r max_points, t CASE WHEN " HANDPIECE_IS_BLIND
+           " THEN '' WHEN marker = $1 THEN marks ELSE replace(marks, '\"marker\": \"' || substr(marker, 1, 60) || "
+           "'\"', '\"marker\": \"\"') END AS marks, i made"},
     Listed{"jobs", "i number, t campaign, t attempt, t rubric, i made, t state, t worker, i lease_until, i turn",
            "number", nullptr},
     Listed{"scores",
@@ -111,13 +116,16 @@ constexpr std::array kListed = {
            "assignment, judge, round, criterion", "judge = $1"},
     Listed{"standards", "t id, t assignment, t method, t content, t who, i made", "id", "who = $1"},
     Listed{"exemplars", "t attempt, t assignment, t content, t who, i made", "attempt",
-           "who = $1 OR (" HANDPIECE_RELEASED_ATTEMPTS ")"},
+           "who = $1 OR (" HANDPIECE_RELEASED_ATTEMPTS ")",
+           "t attempt, t assignment, t content, t CASE WHEN who = $1 THEN who ELSE '' END AS who, i made"},
     Listed{"calibrations", "t attempt, t marker, t content, i made", "attempt, marker", "marker = $1"},
     Listed{"audit", "i number, i at, t who, t what, t about, t detail", "number",
            "who = $1 OR about = $1 OR about IN (SELECT id FROM attempts WHERE person = $1)",
-           "i number, i at, t who, t what, t CASE WHEN what = 'mark' AND detail = 'blind' AND about NOT IN (SELECT "
-           "attempt FROM releases) THEN '' ELSE about END AS about, t detail"},
+           "i number, i at, t CASE WHEN who <> $1 AND (what = 'mark' OR what = 'give in marks' OR what = 'work seen "
+           "blind' OR what = 'set exemplar') THEN '' ELSE who END AS who, t what, t CASE WHEN " HANDPIECE_TELLS_BLIND
+           " THEN '' ELSE about END AS about, t detail"},
 };
+#undef HANDPIECE_IS_BLIND
 #undef HANDPIECE_RELEASED_ATTEMPTS
 #undef HANDPIECE_DECIDED_ATTEMPTS
 #undef HANDPIECE_DECIDED
@@ -128,7 +136,11 @@ BookTable read(Database& database, const Listed& listed, const std::string* pers
     BookTable table{listed.table, {}, {}};
     std::string kinds, columns;
     for (std::string_view rest = person && listed.ownColumns ? listed.ownColumns : listed.columns; !rest.empty();) {
-        const std::string_view one = rest.substr(0, rest.find(','));
+        // Up to a comma that stands in no brackets.
+        std::size_t end = 0;
+        for (int open = 0; end < rest.size() && (open > 0 || rest[end] != ','); ++end)
+            open += rest[end] == '(' ? 1 : rest[end] == ')' ? -1 : 0;
+        const std::string_view one = rest.substr(0, end);
         rest.remove_prefix(std::min(rest.size(), one.size() + 2));
         kinds += one[0];
         const std::size_t name = one.rfind(' ') + 1;  // the kind stands before it, or AS

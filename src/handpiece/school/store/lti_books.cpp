@@ -5,7 +5,7 @@
 
 #include "handpiece/school/store/books_state.h"
 #include "handpiece/school/store/exam_books.h"
-#include "handpiece/school/store/teaching.h"
+#include "handpiece/school/store/visible.h"
 
 namespace handpiece::school {
 namespace {
@@ -164,16 +164,19 @@ Worth LtiBooks::worthOf(const std::string& assignment, const std::string& person
         worth.came = attempt.received;
         worth.points.reset(), worth.maxPoints.reset(), worth.verdict.clear();
         const std::string& id = attempt.attempt.id;
+        // A platform hears what its student may see.
+        const Visible seen = visibleToItsStudent(standingOf(books_, id));
         if (its->kind == "exam") {
             const std::vector<ExamDecision> decisions = ExamBooks(books_).decisionsOf(id);
             worth.verdict = verdictOf(decisions);
             if (!decisions.empty()) worth.decided = decisions.back().made;
             const std::vector<Score> scores = books_.scoresOf(id);
-            if ((worth.verdict == "pass" || worth.verdict == "fail") && !scores.empty() && scores.back().maxScore > 0.0)
+            if (seen.worth && (worth.verdict == "pass" || worth.verdict == "fail") && !scores.empty() &&
+                scores.back().maxScore > 0.0)
                 worth.points = scores.back().score, worth.maxPoints = scores.back().maxScore;
         } else {
             // What a teacher has said of it and given back, not what a machine has.
-            if (!Teaching(books_).isReleased(id)) continue;
+            if (!seen.marks) continue;
             for (const Mark& mark : books_.marksOf(id))
                 if ((mark.kind == "teacher" || mark.kind == "adjudication") && mark.maxPoints > 0.0)
                     worth.points = mark.points, worth.maxPoints = mark.maxPoints, worth.decided = mark.made;

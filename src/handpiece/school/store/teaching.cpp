@@ -102,13 +102,13 @@ std::vector<std::string> Teaching::worksOf(const std::string& assignment) const 
     return all;
 }
 
-std::vector<MarkingDesk> Teaching::desks(const std::string& assignment) const {
+std::vector<MarkingDesk> Teaching::desks(const std::string& assignment, const std::string& marker) const {
     std::vector<MarkingDesk> all;
     Statement rows = state_.ask(
         "SELECT d.marker, d.seed, d.made, coalesce(w.batch, -1), coalesce(w.attempt, '') FROM desks d LEFT JOIN "
-        "desk_works w ON w.assignment = d.assignment AND w.marker = d.marker WHERE d.assignment = $1 ORDER BY "
-        "d.marker, w.batch, w.place",
-        assignment);
+        "desk_works w ON w.assignment = d.assignment AND w.marker = d.marker WHERE d.assignment = $1 AND ($2 = '' OR "
+        "d.marker = $2) ORDER BY d.marker, w.batch, w.place",
+        assignment, marker);
     while (rows.next()) {
         if (all.empty() || all.back().marker != rows.text(0))
             all.push_back({assignment, rows.text(0), seedOf(rows.text(1)), rows.integer(2), {}});
@@ -121,9 +121,10 @@ std::vector<MarkingDesk> Teaching::desks(const std::string& assignment) const {
 }
 
 std::optional<MarkingDesk> Teaching::desk(const std::string& assignment, const std::string& marker) const {
-    for (MarkingDesk& one : desks(assignment))
-        if (one.marker == marker) return std::move(one);
-    return {};
+    if (marker.empty()) return {};
+    std::vector<MarkingDesk> found = desks(assignment, marker);
+    if (found.empty()) return {};
+    return std::move(found.front());
 }
 
 MarkingDesk Teaching::takeWorks(const std::string& assignment, const std::string& marker, std::uint64_t seed,

@@ -90,7 +90,8 @@ class Teaching : private BooksRoom {
     /// known to who marks.
     [[nodiscard]] std::vector<std::string> worksOf(const std::string& assignment) const;
     [[nodiscard]] std::optional<MarkingDesk> desk(const std::string& assignment, const std::string& marker) const;
-    [[nodiscard]] std::vector<MarkingDesk> desks(const std::string& assignment) const;
+    /// Empty marker: of all.
+    [[nodiscard]] std::vector<MarkingDesk> desks(const std::string& assignment, const std::string& marker = {}) const;
     /// Begins the marker's desk, or adds what came since as a batch of its own; never the marker's own work.
     MarkingDesk takeWorks(const std::string& assignment, const std::string& marker, std::uint64_t seed, const Act& act);
     /// Empty marker: of all.

@@ -87,9 +87,9 @@ Page attemptOf(const Visit& v, const std::string& id) {
         for (school::Comment& one : word.comments)
             comments.push_back(std::move(one));
     }
-    return {200,
-            report::attemptPage(lookerOf(v), *attempt, namesFor(v, seen, attempt->person),
-                                seen.worth ? v.books.scoresOf(id) : std::vector<school::Score>{}, marks, comments)};
+    return {200, report::attemptPage(lookerOf(v), *attempt, namesFor(v, seen, attempt->person),
+                                     seen.worth ? v.books.scoresOf(id) : std::vector<school::Score>{}, marks, comments,
+                                     seen.markers ? v.books.alike(id) : std::vector<school::Books::Alike>{})};
 }
 
 Page resultOf(const Visit& v, const std::string& id, Readings& readings) {

@@ -5,10 +5,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <random>
+
 #include "app/simulation/live_session_fixture.h"
 #include "handpiece/app/assessment/score_work.h"
+#include "handpiece/app/proving/likeness.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/record/session/session_writer.h"
 #include "support/error_of.h"
 
 namespace handpiece::proving {
@@ -209,6 +216,63 @@ TEST_F(Proving, GingivaThatWasTakenAwayIsMissed) {
     EXPECT_THAT(proved(recorded("bare.h5", honest())).reason,
                 HasSubstr("gingiva or bone beside the tooth was another"));
     EXPECT_EQ(proved(recorded("whole.h5", honest(), task_.toothCase)).state, "proven");
+}
+
+/// A hand on its way by chance, as long as that.
+std::vector<session::Record> wander(std::uint64_t seed, std::size_t samples) {
+    std::mt19937_64 random(seed);
+    std::vector<session::Record> all(samples);
+    std::array<std::int32_t, 3> at{};
+    for (std::size_t i = 0; i < samples; ++i) {
+        for (std::int32_t& one : at)
+            one += static_cast<std::int32_t>(random() % 2001) - 1000;
+        all[i].tick = i, all[i].position = at;
+    }
+    return all;
+}
+std::vector<std::string> sketched(const fs::path& file, const std::vector<session::Record>& records) {
+    {
+        session::SessionWriter writer(file, {1000, "a", "1", "{}", std::vector<std::byte>(10)});
+        for (const session::Record& one : records)
+            writer.append(one);
+    }
+    return motionSketch(file);
+}
+std::size_t shared(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+    std::vector<std::string> both;
+    std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(both));
+    return both.size();
+}
+
+TEST(Likeness, FindsAMotionThatIsNearlyTheSameAndNoOther) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "s.h5";
+    const std::vector<session::Record> whole = wander(1, 60'000);
+    const std::vector<std::string> own = sketched(file, whole);
+    ASSERT_EQ(own.size(), kSketch);
+    EXPECT_TRUE(std::is_sorted(own.begin(), own.end()));
+    // One sample changed, which made it another work by its inputs.
+    std::vector<session::Record> changed = whole;
+    changed[30'000].position[0] += 1;
+    EXPECT_GE(shared(own, sketched(file, changed)), kSketch - 2);
+    // A quarter cut off at the front, all ticks others; and something put before it.
+    std::vector<session::Record> later(whole.begin() + 15'000, whole.end());
+    for (std::size_t i = 0; i < later.size(); ++i)
+        later[i].tick = i;
+    EXPECT_GE(shared(own, sketched(file, later)), kSketch / 2);
+    std::vector<session::Record> longer = wander(2, 20'000);
+    longer.insert(longer.end(), whole.begin(), whole.end());
+    for (std::size_t i = 0; i < longer.size(); ++i)
+        longer[i].tick = i;
+    EXPECT_GE(shared(own, sketched(file, longer)), kSketch / 2);
+    // It rests now and then: only what moves counts.
+    std::vector<session::Record> slower;
+    for (const session::Record& one : whole)
+        for (int k = 0; k < (one.tick % 7 == 0 ? 3 : 1); ++k)
+            slower.push_back(one), slower.back().tick = slower.size() - 1;
+    EXPECT_EQ(sketched(file, slower), own);
+    EXPECT_EQ(shared(own, sketched(file, wander(3, 60'000))), 0u) << "another hand";
+    EXPECT_THAT(sketched(file, std::vector<session::Record>(1, whole[0])), IsEmpty());
 }
 
 }  // namespace

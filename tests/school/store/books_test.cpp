@@ -509,6 +509,39 @@ TEST_P(BooksTest, ASessionIsOnePersonsWhateverItsBytes) {
     EXPECT_FALSE(books->otherPersonWith(id(1)));
 }
 
+TEST_P(BooksTest, WorkThatIsNearlyAnothersIsTold) {
+    auto books = filled();
+    std::vector<std::string> sketch;
+    for (int i = 0; i < 64; ++i)
+        sketch.push_back(fmt::format("{:016x}", 1000 + i));
+    const auto work = [&](int number, const char* person, const std::string& bytes, std::vector<std::string> hashes) {
+        PushedAttempt pushed = attempt(number, {bytes});
+        pushed.person = person;
+        books->push(pushed);
+        books->keepSketch(sha256(bytes), hashes);
+    };
+    work(1, "s1", "one", sketch);
+    EXPECT_THAT(books->alike(id(1)), SizeIs(0));
+    std::vector<std::string> changed = sketch, other;
+    changed[5] = std::string(16, 'f');
+    for (int i = 0; i < 64; ++i)
+        other.push_back(fmt::format("{:016x}", 5000 + i));
+    other[0] = sketch[0];
+    work(2, "s2", "two", changed);
+    work(3, "s3", "three", other);
+    work(4, "s1", "four", sketch);
+    const auto of1 = books->alike(id(1));
+    ASSERT_THAT(of1, SizeIs(1)) << "one's own next work is none, and a chance stretch neither";
+    EXPECT_EQ(of1[0].attempt, id(2));
+    EXPECT_EQ(of1[0].person, "s2");
+    EXPECT_EQ(of1[0].percent, 98);
+    EXPECT_THAT(books->alike(id(2)), SizeIs(2)) << "it does not say who was first";
+    EXPECT_THAT(books->alike(id(3)), SizeIs(0));
+    // A short one that is all of a long one's.
+    work(5, "s3", "five", {sketch.begin(), sketch.begin() + 8});
+    EXPECT_EQ(books->alike(id(5)).at(0).percent, 100);
+}
+
 TEST_P(BooksTest, APersonsDataIsExportedAndTheNameErasedAndTheCodesStay) {
     auto books = filled();
     books->push(attempt(1, {"one"}));

@@ -240,9 +240,14 @@ class RobustTest : public testing::TestWithParam<const char*> {
         expected_[work.id] = hash;
         return work.id;
     }
-    std::unique_ptr<Program> serve(std::chrono::seconds ahead = 0s) {
-        std::vector<std::string> words{
-            "serve", "--data", data_.string(), "--listen", fmt::format("127.0.0.1:{}", port_), "--workers", "0"};
+    std::unique_ptr<Program> serve(std::chrono::seconds ahead = 0s, int workers = 0) {
+        std::vector<std::string> words{"serve",
+                                       "--data",
+                                       data_.string(),
+                                       "--listen",
+                                       fmt::format("127.0.0.1:{}", port_),
+                                       "--workers",
+                                       std::to_string(workers)};
         if (!database_.empty()) words.insert(words.end(), {"--database", database_});
         auto server = std::make_unique<Program>(words, log(), ahead);
         for (int i = 0; i < 2000; ++i) {

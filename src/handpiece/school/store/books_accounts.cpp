@@ -84,10 +84,9 @@ std::vector<Enrolment> BooksAccounts::enrolmentsOf(const std::string& person) co
 
 std::vector<Station> BooksAccounts::stations() const {
     std::vector<Station> all;
-    Statement rows =
-        state_.ask("SELECT id, name, enrolled, revoked, kind, released FROM stations ORDER BY name, enrolled, id");
+    Statement rows = state_.ask(fmt::format("{} ORDER BY name, enrolled, id", kStationColumns).c_str());
     while (rows.next())
-        all.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.integer(3), rows.text(4), rows.integer(5)});
+        all.push_back(stationOf(rows));
     return all;
 }
 

@@ -74,6 +74,12 @@ bool BooksAccounts::setPasswordByCode(const std::string& login, const std::strin
     return true;
 }
 
+void BooksAccounts::renewHash(const std::string& person, const std::string& from, const std::string& to) {
+    Transaction transaction(*state_.database);
+    state_.run("UPDATE identities SET password = $1 WHERE person = $2 AND password = $3", to, person, from);
+    transaction.commit();
+}
+
 std::vector<Enrolment> BooksAccounts::enrolmentsOf(const std::string& person) const {
     std::vector<Enrolment> all;
     Statement rows = state_.ask("SELECT class, person, role FROM enrolments WHERE person = $1 ORDER BY class", person);

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
+#include <cstring>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -34,6 +36,15 @@ int statusOf(const core::Error& error) {
     return found != statuses.end() ? found->second : 500;
 }
 
+/// What is about the message: its places are the other side's own. Of all else they are paths and databases.
+bool isOfMessage(const core::Error& error) {
+    return error.id() == "message-damaged" || error.id() == "books-invalid" || error.id().starts_with("upload-") ||
+           error.id().starts_with("exam-");
+}
+core::Error withoutPlace(const core::Error& error) {
+    return core::Error(error.problem(), "", error.remedy()).as(error.id(), error.arguments());
+}
+
 /// Piece by piece, as the other side takes it.
 void sendFile(Response& response, Page& page) {
     const std::uint64_t bytes = core::sizeOf(page.stream);
@@ -55,10 +66,17 @@ void answer(Response& response, const std::string& json, int status) {
     response.set_content(json, kJson);
 }
 void answer(Response& response, const core::Error& error) {
-    // Where it went wrong here is not a station's to know, unless it is its own.
+    // Where it went wrong here is not a station's to know, unless it is in what it sent.
     const int status = statusOf(error);
-    if (status < 500 || status == 507) return answer(response, school_wire::toJson(error), status);
+    if (status < 500)
+        return answer(response, school_wire::toJson(isOfMessage(error) ? error : withoutPlace(error)), status);
     std::fprintf(stderr, "handpiece-school: %s\n", error.what());
+    if (status == 507)
+        return answer(response,
+                      school_wire::toJson(
+                          core::Error("the server's disk is full", "", "make room there; nothing is lost until then")
+                              .as(error.id(), {std::strerror(ENOSPC)})),
+                      status);
     if (status == 503) {
         response.set_header("Retry-After", "5");
         return answer(response,

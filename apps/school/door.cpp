@@ -32,6 +32,8 @@ std::optional<int> Door::refuses(const Request& request) const {
     if (request.headers.size() > kMostHeaders || bytes > kMostHeaderBytes) return 431;
     // Packed bodies grow a million times; nobody who belongs here packs any.
     if (request.has_header("Content-Encoding")) return 415;
+    // Each piece is sent with a head of its own: of two thousand the answer is many times what is asked for.
+    if (request.ranges.size() > kMostRanges) return 416;
     const bool hasBody = request.method == "POST" || request.method == "PUT";
     if (!hasBody && request.method != "GET" && request.method != "HEAD") return 405;
     // One length, told beforehand: else where it ends, and what comes next, is anybody's guess.

@@ -15,7 +15,7 @@ namespace handpiece::school_server {
 
 class Door {
   public:
-    static constexpr std::size_t kMostHeaders = 100, kMostHeaderBytes = 32 << 10;
+    static constexpr std::size_t kMostHeaders = 100, kMostHeaderBytes = 32 << 10, kMostRanges = 4;
 
     explicit Door(const std::vector<Entry>& routes);
 

@@ -2,7 +2,6 @@
 // handpiece school lti, retention (on the server's machine), statements (on a station).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <cstdio>
 #include <cstdlib>
@@ -17,6 +16,7 @@
 #include "school/school_settings.h"
 #include "school/server.h"
 #include "school/statements_push.h"
+#include "school/typed_secret.h"
 
 namespace handpiece::school_cli {
 namespace {
@@ -97,12 +97,7 @@ void pushStatements(const ElsewhereOptions& o) {
         throw core::Error("there are no results here", (home / "results.db").string(),
                           "name the folder with results.db: --home");
     school_station::RecordStore to{o.lrs, o.user, {}};
-    if (!o.user.empty()) {
-        // No list of processes and no history has it.
-        if (isatty(STDIN_FILENO)) std::fprintf(stderr, "password: ");
-        for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar())
-            to.password += static_cast<char>(c);
-    }
+    if (!o.user.empty()) to.password = typedSecret("password");
     const school::Store store(home / "results.db");
     const school_station::PushedStatements pushed =
         school_station::pushStatements(store, o.actor, to, home / "statements.json");

@@ -174,7 +174,7 @@ Page addExercise(const Visit& v, const std::string& file) {
     } catch (const core::Error& error) {
         if (error.id().starts_with("store") || error.id() == "no-space") throw;
         // Where it lies here is nobody's business.
-        std::string where = error.where();
+        std::string where = error.id().starts_with("books-") ? path.string() : error.where();
         if (const std::size_t at = where.find(path.string()); at != std::string::npos)
             where.replace(at, path.string().size(), "exercise.handpiece");
         return exercisesOf(v, {words()("school-teaching.not-taken",

@@ -543,12 +543,13 @@ Page ownAccountPage(const Visit& v, const std::string& shown, const std::string&
     return {200, page.text()};
 }
 
-Page setOwnPassword(const Visit& v, const Sent& sent) {
+Page setOwnPassword(const Visit& v, const Sent& sent, const std::function<void()>& isTheirs) {
     return tried(
         [&]() -> Page {
             if (v.person.password.empty() || sent("old").size() > 256 ||
                 !school::isPassword(v.person.password, sent("old")))
                 return {400, ownAccountPage(v, {}, word("own-wrong")).body};
+            isTheirs();
             if (sent("new") != sent("again")) return {400, ownAccountPage(v, {}, word("first-not-same")).body};
             school::requireGoodPassword(sent("new"), v.person.login);
             v.books.setPassword(v.person.code, school::hashOfPassword(sent("new")), actOf(v));

@@ -3,6 +3,7 @@
 /// @file
 /// What an administrator sees and changes in a browser: people, classes, stations, the audit.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,7 @@ using Sent = std::function<std::string(const char*)>;
 /// Of oneself unless one may see all.
 [[nodiscard]] Page auditPage(const Visit& visit, const std::string& before, const std::string& about);
 [[nodiscard]] Page ownAccountPage(const Visit& visit, const std::string& shown = {}, const std::string& wrong = {});
-[[nodiscard]] Page setOwnPassword(const Visit& visit, const Sent& sent);
+/// `isTheirs` is called when the old password was right.
+[[nodiscard]] Page setOwnPassword(const Visit& visit, const Sent& sent, const std::function<void()>& isTheirs);
 
 }  // namespace handpiece::school_server

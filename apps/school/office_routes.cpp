@@ -76,6 +76,14 @@ Page setFirstPassword(Service& of, const Request& request) {
     return {200, firstPage({}, {}, true)};
 }
 
+/// Whoever found a browser open must not learn the password here faster than at the door.
+Page changeOwnPassword(Service& of, const Request& request, const Visit& visit) {
+    const std::string client = clientOf(request, of.settings);
+    if (const std::int64_t wait = of.waitToGuess(client, visit.person.login); wait > 0)
+        return {429, ownAccountPage(visit, {}, words()("school.wait", (wait + 999) / 1000)).body};
+    return setOwnPassword(visit, sentOf(request), [&] { of.guessedRight(client, visit.person.login); });
+}
+
 /// Where it is reached, as far as the server knows.
 std::string addressOf(const Request& request, const Service& of) {
     const std::string host = request.get_header_value("Host");
@@ -83,21 +91,21 @@ std::string addressOf(const Request& request, const Service& of) {
         !host.empty() && host.size() < 200 && std::all_of(host.begin(), host.end(), [](unsigned char c) {
             return std::isalnum(c) != 0 || c == '.' || c == '-' || c == ':' || c == '[' || c == ']';
         });
-    return isPlain ? fmt::format("{}://{}", of.isSecure() ? "https" : "http", host) : std::string();
+    return isPlain ? fmt::format("{}://{}", isSecure(request, of.settings) ? "https" : "http", host) : std::string();
 }
 
 }  // namespace
 
 std::vector<Entry> officeRoutes(Service* of) {
     return {
-        {"GET", "/first", Handler([of](const Request&, Response& response) {
-             answer(response, Page{200, firstPage({}, {})}, of->isSecure());
+        {"GET", "/first", Handler([of](const Request& request, Response& response) {
+             answer(response, Page{200, firstPage({}, {})}, isSecure(request, of->settings));
          })},
         {"POST", "/first", Handler([of](const Request& request, Response& response) {
-             answer(response, setFirstPassword(*of, request), of->isSecure());
+             answer(response, setFirstPassword(*of, request), isSecure(request, of->settings));
          })},
         {"GET", "/account", Shown([](const Request&, const Visit& v) { return ownAccountPage(v); })},
-        {"POST", "/account", Shown([](const Request& r, const Visit& v) { return setOwnPassword(v, sentOf(r)); })},
+        {"POST", "/account", Shown([of](const Request& r, const Visit& v) { return changeOwnPassword(*of, r, v); })},
         {"GET", "/account/export", Shown([](const Request&, const Visit& v) { return exportPage(v, v.person.code); })},
         {"GET", "/office/people",
          Shown([](const Request& r, const Visit& v) { return peoplePage(v, r.get_param_value("find")); })},

@@ -31,6 +31,8 @@ struct Entry {
 
 /// The address that asks: where a proxy of ours stands between, what that saw. Nobody else's word for it is taken.
 [[nodiscard]] std::string clientOf(const httplib::Request& request, const Settings& settings);
+/// That this came by TLS: to this server, or to a proxy of ours that says so.
+[[nodiscard]] bool isSecure(const httplib::Request& request, const Settings& settings);
 
 // Of `service`, which may be null where nobody calls them.
 [[nodiscard]] std::vector<Entry> generalRoutes(Service* service);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // On the server's machine: people, codes, exercises, results. On a station: enrol, push, status.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cstdlib>
 #include <filesystem>
@@ -17,6 +16,7 @@
 #include "school/school_settings.h"
 #include "school/server.h"
 #include "school/station.h"
+#include "school/typed_secret.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::school_cli {
@@ -63,16 +63,12 @@ void addPerson(const BooksOptions& o) {
     fmt::print("{}: {}\n", person.code, o.role);
 }
 
-/// Read from standard input, so that no list of processes and no history has it.
 void setPassword(const BooksOptions& o) {
     const SchoolSettings place = placeOfBooks(o.data, o.database);
     Books books(place.data, place.database);
     const auto person = books.person(o.code);
     if (!person) throw core::Error("there is no such person", o.code, "add them: handpiece school person");
-    std::string password;
-    if (isatty(STDIN_FILENO)) std::fprintf(stderr, "password: ");
-    for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar())
-        password += static_cast<char>(c);
+    const std::string password = typedSecret("password");
     school::requireGoodPassword(password, person->login);
     books.setPassword(o.code, school::hashOfPassword(password), now());
 }

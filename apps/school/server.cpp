@@ -64,16 +64,24 @@ std::vector<Entry> everyRoute(Service* service) {
     return all;
 }
 
+bool isProxy(const std::string& address, const Settings& settings) {
+    const auto in = [&](const std::vector<std::string>& all) {
+        return std::find(all.begin(), all.end(), address) != all.end();
+    };
+    return in(settings.proxies) || in(settings.signOn.proxies);
+}
+
 }  // namespace
 
+bool isSecure(const Request& request, const Settings& settings) {
+    if (!settings.certificate.empty()) return true;
+    // Of two, one is what the browser wrote.
+    return isProxy(request.remote_addr, settings) && request.get_header_value_count("X-Forwarded-Proto") == 1 &&
+           request.get_header_value("X-Forwarded-Proto") == "https";
+}
+
 std::string clientOf(const Request& request, const Settings& settings) {
-    const auto isOurs = [&](const std::string& address) {
-        const auto in = [&](const std::vector<std::string>& all) {
-            return std::find(all.begin(), all.end(), address) != all.end();
-        };
-        return in(settings.proxies) || in(settings.signOn.proxies);
-    };
-    if (!isOurs(request.remote_addr)) return request.remote_addr;
+    if (!isProxy(request.remote_addr, settings)) return request.remote_addr;
     // Each proxy adds whom it saw at the end; what stands before that anybody may have written.
     std::string all;
     for (auto [at, end] = request.headers.equal_range("X-Forwarded-For"); at != end; ++at)
@@ -87,7 +95,7 @@ std::string clientOf(const Request& request, const Settings& settings) {
         if (last.empty() || last.size() > kMostAddress ||
             last.find_first_not_of("0123456789abcdefABCDEF.:") != last.npos)
             break;
-        if (!isOurs(last)) return last;
+        if (!isProxy(last, settings)) return last;
         all.resize(comma);
     }
     return request.remote_addr;
@@ -168,6 +176,8 @@ struct Server::State : Service {
         http->set_pre_routing_handler([this](const Request& request, Response& response) {
             using Result = httplib::Server::HandlerResponse;
             const auto status = door.refuses(request);
+            // From then on a browser that was here once comes by TLS alone.
+            if (isSecure(request, settings)) response.set_header("Strict-Transport-Security", "max-age=31536000");
             // Of each request anew: an answer that nobody took was not logged.
             refusedNow = status.has_value();
             if (!status) {
@@ -194,7 +204,7 @@ struct Server::State : Service {
             if (response.status != 503 || request.get_header_value("Accept").find("text/html") == std::string::npos)
                 return;
             const config::LanguageHere here(languageOf(request));
-            answer(response, refused(config::words()("school.busy"), 503), isSecure());
+            answer(response, refused(config::words()("school.busy"), 503), isSecure(request, settings));
         });
         http->set_error_handler([](const Request&, Response& response) {
             if (!response.body.empty()) return;
@@ -202,6 +212,7 @@ struct Server::State : Service {
                                : response.status == 413 ? "that is too long for one message"
                                : response.status == 411 ? "tell its length beforehand, in one number"
                                : response.status == 415 ? "send it as it is, not packed"
+                               : response.status == 416 ? "too many pieces are asked for, or none that is there"
                                : response.status == 431 ? "too many headers, or too long ones"
                                                         : "this cannot be answered";
             const int status = response.status;
@@ -287,16 +298,17 @@ struct Server::State : Service {
 
     void show(const Entry& entry, const Request& request, Response& response) {
         const BooksPool::Lent open = books.take();
+        const bool secure = isSecure(request, settings);
         const std::string token = tokenOf(request);
         const Milliseconds now = clock();
         const auto person = token.empty() ? std::nullopt : open->personByToken(token, now);
-        if (!person) return answer(response, Page{303, {}, "/login", std::string()}, isSecure());
+        if (!person) return answer(response, Page{303, {}, "/login", std::string()}, secure);
         const Visit visit{*open, *person, token, now};
         // What changes something came from a page of this very log-in.
         if (std::string_view(entry.method) == "POST" &&
             !school::isSameSecret(sentBy(request, "token"), school::requestTokenOf(token)))
-            return answer(response, refused(config::words()("school.gone"), 403), isSecure());
-        answer(response, std::get<Shown>(entry.answer)(request, visit), isSecure());
+            return answer(response, refused(config::words()("school.gone"), 403), secure);
+        answer(response, std::get<Shown>(entry.answer)(request, visit), secure);
     }
 
     /// What the station speaks, the server has to know.

@@ -26,7 +26,6 @@ struct Service {
           books({s.data, s.database, s.connections}),
           reviews(s.data / "reviews", books) {}
 
-    [[nodiscard]] bool isSecure() const { return !settings.certificate.empty(); }
     /// Before a guess at a login's secret, which counts at once: a hundred at a time are a hundred. How long it has to
     /// wait [ms]; 0: it may.
     [[nodiscard]] std::int64_t waitToGuess(const std::string& client, const std::string& login) {

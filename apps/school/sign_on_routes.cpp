@@ -55,13 +55,17 @@ void signOn(Service& of, const Request& request, Response& response) {
     const bool knowsSecret =
         !settings.secret.empty() && school::isSameSecret(school::sha256(request.get_header_value("X-Handpiece-Secret")),
                                                          school::sha256(settings.secret));
-    if (!isProxy || !knowsSecret || said.empty() || said.size() > 200) {
+    // Of two headers one was a browser's, which the proxy let through.
+    const bool isOnce = request.get_header_value_count(settings.header.c_str()) == 1 &&
+                        request.get_header_value_count("X-Handpiece-Secret") == 1;
+    if (!isProxy || !knowsSecret || !isOnce || said.empty() || said.size() > 200) {
         if (!said.empty())
             noteRefusal(of, "sign-on refused", request.remote_addr,
                         !isProxy       ? "no proxy of ours"
                         : !knowsSecret ? "without the proxy's secret"
+                        : !isOnce      ? "two headers of one name"
                                        : "no name");
-        return answer(response, refused(words()("school-exam.no-sign-on"), 403), of.isSecure());
+        return answer(response, refused(words()("school-exam.no-sign-on"), 403), isSecure(request, of.settings));
     }
     std::optional<school::Person> person;
     {
@@ -71,37 +75,35 @@ void signOn(Service& of, const Request& request, Response& response) {
     }
     if (!person) {
         noteRefusal(of, "sign-on refused", request.remote_addr, "nobody here has this name");
-        return answer(response, refused(words()("school-exam.unknown-here"), 403), of.isSecure());
+        return answer(response, refused(words()("school-exam.unknown-here"), 403), isSecure(request, of.settings));
     }
-    // What the browser speaks to is the proxy.
-    const bool isSecure = of.isSecure() || request.get_header_value("X-Forwarded-Proto") == "https";
-    answer(response, welcome(of, *person, "/classes", "single sign-on"), isSecure);
+    answer(response, welcome(of, *person, "/classes", "single sign-on"), isSecure(request, of.settings));
 }
 
-bool isSecureAddress(const Service& of) {
-    return of.isSecure() || of.settings.address.starts_with("https://");
+bool isSecureAddress(const Request& request, const Service& of) {
+    return isSecure(request, of.settings) || of.settings.address.starts_with("https://");
 }
 
 void refuseLaunch(Service& of, const Request& request, Response& response, const core::Error& e) {
     noteRefusal(of, "launch refused", request.remote_addr, e.id() + " " + e.problem().substr(0, 200));
     const int status = e.id() == "platform-silent" ? 502 : 403;
-    answer(response, refused(e.problem() + ": " + e.remedy(), status), of.isSecure());
+    answer(response, refused(e.problem() + ": " + e.remedy(), status), isSecure(request, of.settings));
 }
 
 void beginHere(Service& of, const Request& request, Response& response) {
     if (of.settings.address.empty())
-        return answer(response, refused(words()("school-exam.no-address"), 404), of.isSecure());
+        return answer(response, refused(words()("school-exam.no-address"), 404), isSecure(request, of.settings));
     try {
         auto open = of.books.take();
         const Beginning beginning =
             beginLaunch(*open, of.launchKey, request.get_param_value("iss"), request.get_param_value("client_id"),
                         request.get_param_value("login_hint").substr(0, 1000),
                         request.get_param_value("lti_message_hint").substr(0, 4000), of.settings.address, of.clock());
-        answer(response, Page{303, {}, beginning.to}, of.isSecure());
+        answer(response, Page{303, {}, beginning.to}, isSecure(request, of.settings));
         // It comes back by a form of the platform's: only a cookie that says None comes along.
         response.set_header("Set-Cookie",
                             fmt::format("{}={}; Path=/lti; HttpOnly; Max-Age=600{}", kLaunchCookie, beginning.cookie,
-                                        isSecureAddress(of) ? "; Secure; SameSite=None" : ""));
+                                        isSecureAddress(request, of) ? "; Secure; SameSite=None" : ""));
     } catch (const core::Error& e) {
         if (e.id() != "platform-unknown") throw;
         refuseLaunch(of, request, response, e);
@@ -116,7 +118,7 @@ void launchHere(Service& of, const Request& request, Response& response) {
             launch = takeLaunch(*open, of.launchKey, request.get_param_value("id_token"),
                                 request.get_param_value("state"), secretInCookie(request, kLaunchCookie), of.clock());
         }
-        answer(response, welcome(of, launch->person, launch->to, "LTI 1.3"), isSecureAddress(of));
+        answer(response, welcome(of, launch->person, launch->to, "LTI 1.3"), isSecureAddress(request, of));
     } catch (const core::Error& e) {
         const std::string& id = e.id();
         if (!id.starts_with("launch-") && !id.starts_with("token-") && !id.starts_with("platform-")) throw;

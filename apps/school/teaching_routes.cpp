@@ -9,7 +9,7 @@ namespace handpiece::school_server {
 
 /// The address that this was asked at.
 static std::string homeOf(const Service& of, const httplib::Request& request) {
-    return (of.isSecure() ? "https://" : "http://") + request.get_header_value("Host");
+    return (isSecure(request, of.settings) ? "https://" : "http://") + request.get_header_value("Host");
 }
 
 /// What a form puts around a file.

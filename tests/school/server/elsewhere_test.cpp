@@ -459,12 +459,19 @@ TEST_F(ElsewhereTest, AProxyIsBelievedAndNobodyElse) {
     EXPECT_EQ(with({"127.0.0.1"}, {{"X-Handpiece-User", "ida"}, {"X-Handpiece-Secret", secret + "x"}}).first, 403);
     EXPECT_EQ(with({"127.0.0.1"}, {{"X-Handpiece-Secret", secret}}).first, 403);
     EXPECT_EQ(with({"127.0.0.1"}, {{"X-Handpiece-User", "nobody"}, {"X-Handpiece-Secret", secret}}).first, 403);
+    // One of two was a browser's.
+    for (const char* doubled : {"X-Handpiece-User", "X-Handpiece-Secret"}) {
+        httplib::Headers two = right;
+        two.emplace(doubled, right.find(doubled)->second);
+        EXPECT_EQ(with({"127.0.0.1"}, two), std::pair(403, std::string())) << doubled;
+    }
     std::vector<std::string> why;
     for (const school::AuditLine& line : books().audit(0, 1000))
         if (line.what == "sign-on refused") why.push_back(line.detail);
-    EXPECT_THAT(why, testing::ElementsAre(HasSubstr("127.0.0.1: no proxy of ours"), HasSubstr("no proxy of ours"),
-                                          HasSubstr("without the proxy's secret"),
-                                          HasSubstr("without the proxy's secret"), HasSubstr("nobody here")));
+    EXPECT_THAT(why,
+                testing::ElementsAre(HasSubstr("127.0.0.1: no proxy of ours"), HasSubstr("no proxy of ours"),
+                                     HasSubstr("without the proxy's secret"), HasSubstr("without the proxy's secret"),
+                                     HasSubstr("nobody here"), HasSubstr("two headers"), HasSubstr("two headers")));
 }
 
 TEST_F(ElsewhereTest, StatementsGoToARecordStoreOnceEach) {

@@ -9,6 +9,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "handpiece/school/people/throttle.h"
+#include "handpiece/school/store/books_accounts.h"
+#include "school/answers.h"
 #include "school/server/pages_fixture.h"
 #include "school/slow_guard.h"
 
@@ -274,6 +277,15 @@ TEST_F(SecurityTest, TooLongIsRefusedAndTheNextIsServed) {
         EXPECT_EQ(statusOf(heard), status) << head;
         EXPECT_EQ(heard.find("HTTP/1.1", 8), heard.npos) << "answered twice: " << heard;
     }
+    // Pieces, each of which would have a head of its own.
+    std::string pieces = "bytes=0-1";
+    EXPECT_EQ(
+        statusOf(raw(school.port(), "GET /healthz HTTP/1.1\r\nHost: x\r\n" + close + "Range: " + pieces + "\r\n\r\n")),
+        "206");
+    for (int i = 0; i < 1000; ++i)
+        pieces += ",0-1";
+    const std::string torn = raw(school.port(), "GET /healthz HTTP/1.1\r\nHost: x\r\nRange: " + pieces + "\r\n\r\n");
+    EXPECT_EQ(statusOf(torn), "416");
     // A line of a header, and headers, without end: cut off long before they are a megabyte.
     for (const std::string& endless : {std::string(1 << 16, 'h'), std::string("X: y\r\n")}) {
         const int line = socket(AF_INET, SOCK_STREAM, 0);
@@ -457,6 +469,78 @@ TEST_F(SecurityTest, ConnectionsThatAreNotTheServersAreLeftAlone) {
     EXPECT_EQ(errno, EAGAIN);
     for (const int line : {listening, there, here, accepted})
         close(line);
+}
+
+TEST_F(SecurityTest, WhoComesByTlsStaysThere) {
+    const auto logIn = [](const School& school, const httplib::Headers& headers) {
+        httplib::Client http(school.address());
+        const auto in = http.Post("/login", headers, httplib::Params{{"login", "t1"}, {"password", kPassword}});
+        EXPECT_EQ(in->status, 303);
+        return std::pair(in->get_header_value("Set-Cookie"), in->get_header_value("Strict-Transport-Security"));
+    };
+    const httplib::Headers tls{{"X-Forwarded-Proto", "https"}};
+    {
+        const School school(data(), School::Odd{.database = databaseOf(data()), .proxies = {"127.0.0.1"}});
+        const auto [cookie, strict] = logIn(school, tls);
+        EXPECT_THAT(cookie, HasSubstr("; Secure"));
+        EXPECT_THAT(strict, HasSubstr("max-age="));
+        EXPECT_THAT(logIn(school, {}), testing::Pair(Not(HasSubstr("Secure")), ""));
+        EXPECT_THAT(logIn(school, {{"X-Forwarded-Proto", "http"}}), testing::Pair(Not(HasSubstr("Secure")), ""));
+        EXPECT_THAT(logIn(school, {{"X-Forwarded-Proto", "https"}, {"X-Forwarded-Proto", "http"}}),
+                    testing::Pair(Not(HasSubstr("Secure")), ""));
+    }
+    const School school(data());
+    EXPECT_THAT(logIn(school, tls), testing::Pair(Not(HasSubstr("Secure")), "")) << "no proxy of ours says so";
+}
+
+TEST_F(SecurityTest, AnErrorDoesNotTellWhereTheBooksLie) {
+    const auto told = [](const std::string& id) {
+        httplib::Response response;
+        answer(response, core::Error("there is none", "/srv/handpiece/books.db", "check it").as(id, {"person", "x"}));
+        return response.body;
+    };
+    for (const char* id : {"books-unknown", "books-duplicate", "books-changed", "no-space", "account-suspended",
+                           "store-locked", "not-writable", "of nobody's"})
+        EXPECT_THAT(told(id), Not(HasSubstr("/srv"))) << id;
+    EXPECT_THAT(told("message-damaged"), HasSubstr("/srv")) << "a place in what was sent";
+    EXPECT_THAT(told("books-unknown"), testing::AllOf(HasSubstr("there is none"), HasSubstr("check it")));
+}
+
+TEST_F(SecurityTest, TheOldPasswordIsGuessedNoFasterThanAtTheDoor) {
+    School school(data());
+    Browser teacher(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    const httplib::Params guess{{"old", "not that one"}, {"new", "quite another one"}, {"again", "quite another one"}};
+    for (int i = 0; i < school::kFreeOfLogin; ++i)
+        EXPECT_EQ(teacher.send("/account", guess)->status, 400) << i;
+    EXPECT_EQ(teacher.send("/account", guess)->status, 429);
+    EXPECT_EQ(Browser(school.address()).logIn("t1"), 429) << "one count of both";
+    EXPECT_EQ(Browser(school.address()).logIn("t2"), 303);
+    // What is right and no good as a new one is no guess.
+    Browser other(school.address());
+    ASSERT_EQ(other.logIn("e1"), 303);
+    for (int i = 0; i < 2 * school::kFreeOfLogin; ++i)
+        EXPECT_EQ(other.send("/account", {{"old", kPassword}, {"new", "short"}, {"again", "short"}})->status, 400) << i;
+}
+
+TEST_F(SecurityTest, AnOldHashIsRenewedAtTheNextLogIn) {
+    // Of kPassword, with less memory and one pass.
+    const std::string weak =
+        "$argon2id$v=19$m=8192,t=1,p=1$H1rsSiu27fSrI3bkvk3y9w$wgVCx5Vf/5StYCeikHwyTif0staEMcZzUu7OxNzt8gM";
+    Books open = books();
+    open.setPassword("t1", weak, {"server", 5});
+    School school(data());
+    EXPECT_EQ(Browser(school.address()).logIn("t1", "a wrong long one"), 401);
+    EXPECT_EQ(open.person("t1")->password, weak);
+    Browser teacher(school.address());
+    ASSERT_EQ(teacher.logIn("t1"), 303);
+    const std::string fresh = open.person("t1")->password;
+    EXPECT_THAT(fresh, testing::StartsWith("$argon2id$v=19$m=19456,t=2,p=1$"));
+    ASSERT_EQ(Browser(school.address()).logIn("t1"), 303);
+    EXPECT_EQ(open.person("t1")->password, fresh) << "once";
+    EXPECT_EQ(teacher.get("/classes")->status, 200) << "who is in stays in";
+    school::BooksAccounts(open).renewHash("t1", weak, "another");
+    EXPECT_EQ(open.person("t1")->password, fresh) << "it was set meanwhile";
 }
 
 TEST_F(SecurityTest, AGivenLogInIsNotTakenOver) {

@@ -516,11 +516,9 @@ std::optional<Assignment> Books::assignment(const std::string& id) const {
 
 // Stations.
 
-namespace {
 Station stationOf(const Statement& row) {
     return {row.text(0), row.text(1), row.integer(2), row.integer(3), row.text(4), row.integer(5)};
 }
-}  // namespace
 
 void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
                       const std::string& kind) {
@@ -576,9 +574,8 @@ void Books::releaseForExams(const std::string& station, const Act& act) {
 }
 
 std::optional<Station> Books::stationByKey(const std::string& key) const {
-    Statement row = state_->ask(
-        "SELECT id, name, enrolled, revoked, kind, released FROM stations WHERE key_hash = $1 AND revoked = 0",
-        sha256(key));
+    Statement row =
+        state_->ask(fmt::format("{} WHERE key_hash = $1 AND revoked = 0", kStationColumns).c_str(), sha256(key));
     if (!row.next()) return {};
     return stationOf(row);
 }

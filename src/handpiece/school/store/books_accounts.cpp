@@ -74,6 +74,12 @@ bool BooksAccounts::setPasswordByCode(const std::string& login, const std::strin
     return true;
 }
 
+void BooksAccounts::renewHash(const std::string& person, const std::string& from, const std::string& to) {
+    Transaction transaction(*state_.database);
+    state_.run("UPDATE identities SET password = $1 WHERE person = $2 AND password = $3", to, person, from);
+    transaction.commit();
+}
+
 std::vector<Enrolment> BooksAccounts::enrolmentsOf(const std::string& person) const {
     std::vector<Enrolment> all;
     Statement rows = state_.ask("SELECT class, person, role FROM enrolments WHERE person = $1 ORDER BY class", person);
@@ -84,10 +90,9 @@ std::vector<Enrolment> BooksAccounts::enrolmentsOf(const std::string& person) co
 
 std::vector<Station> BooksAccounts::stations() const {
     std::vector<Station> all;
-    Statement rows =
-        state_.ask("SELECT id, name, enrolled, revoked, kind, released FROM stations ORDER BY name, enrolled, id");
+    Statement rows = state_.ask(fmt::format("{} ORDER BY name, enrolled, id", kStationColumns).c_str());
     while (rows.next())
-        all.push_back({rows.text(0), rows.text(1), rows.integer(2), rows.integer(3), rows.text(4), rows.integer(5)});
+        all.push_back(stationOf(rows));
     return all;
 }
 

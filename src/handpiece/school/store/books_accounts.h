@@ -29,6 +29,9 @@ class BooksAccounts : BooksRoom {
     bool setPasswordByCode(const std::string& login, const std::string& code, const std::string& passwordHash,
                            Milliseconds now);
 
+    /// The same password, hashed anew: log-ins go on. Nothing where it has another one meanwhile.
+    void renewHash(const std::string& person, const std::string& from, const std::string& to);
+
     [[nodiscard]] std::vector<Enrolment> enrolmentsOf(const std::string& person) const;
     [[nodiscard]] std::vector<Station> stations() const;
     /// Before `number`, the newest first; `number` 0: from the newest on; empty `about`: all. Which work a marker had

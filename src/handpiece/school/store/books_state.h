@@ -32,6 +32,10 @@ void raiseBooks(Database& database, int version);
 [[nodiscard]] core::Error changed(const Database& database, const std::string& what, const std::string& which);
 [[nodiscard]] core::Error invalid(const std::string& field, const std::string& value, const std::string& remedy);
 
+inline constexpr const char* kStationColumns = "SELECT id, name, enrolled, revoked, kind, released FROM stations";
+/// A row of these.
+[[nodiscard]] Station stationOf(const Statement& row);
+
 /// Throws unless both databases keep it as it is: UTF-8 without a zero.
 void requireText(std::string_view text);
 /// Throws for infinity and what is no number; -0 becomes 0, which SQLite makes of it too.

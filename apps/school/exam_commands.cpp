@@ -2,7 +2,6 @@
 // handpiece school exam: made and signed on the server's machine, held by a station's service, sat by a student.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cstdio>
@@ -27,6 +26,7 @@
 #include "school/school_settings.h"
 #include "school/server.h"
 #include "school/service_manager.h"
+#include "school/typed_secret.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::school_cli {
@@ -61,14 +61,6 @@ Milliseconds momentIn(const std::string& text) {
         throw core::Error(fmt::format("\"{}\" is no time", text), "--opens", "write it in UTC, as 2026-12-01T09:00Z");
     time.tm_year -= 1900, time.tm_mon -= 1;
     return 1000 * static_cast<Milliseconds>(timegm(&time));
-}
-
-std::string readSecret(const char* what) {
-    std::string secret;
-    if (isatty(STDIN_FILENO)) std::fprintf(stderr, "%s: ", what);
-    for (int c = std::getchar(); c != EOF && c != '\n'; c = std::getchar())
-        secret += static_cast<char>(c);
-    return secret;
 }
 
 void makeNew(const ExamOptions& o) {
@@ -154,7 +146,7 @@ void printSheet(const ExamOptions& o) {
 }
 
 void openHere(const ExamOptions& o) {
-    school_exam::ExamClient(o.socket).open(readSecret("opening code"));
+    school_exam::ExamClient(o.socket).open(typedSecret("opening code"));
     fmt::print("open\n");
 }
 
@@ -224,7 +216,7 @@ void tell(const school_exam::Desk& d) {
 
 void begin(const ExamOptions& o) {
     const school_exam::ExamClient client(o.socket);
-    const school_exam::Desk desk = client.begin(o.candidate, o.invigilator, readSecret("confirmation code"));
+    const school_exam::Desk desk = client.begin(o.candidate, o.invigilator, typedSecret("confirmation code"));
     if (!o.out.empty()) client.keepExercise(o.out);
     tell(desk);
 }
@@ -416,7 +408,7 @@ void addStudentsExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     gives.option("--invigilator", o.invigilator, "their code").required();
     gives.callback([options] {
         const school_exam::ExamClient client(options->socket);
-        client.giveUp(sittingAt(client), options->invigilator, readSecret("confirmation code"));
+        client.giveUp(sittingAt(client), options->invigilator, typedSecret("confirmation code"));
     });
     cli::Command says = top.subcommand("status", "Who is at an exam here, and until when");
     socket(says);

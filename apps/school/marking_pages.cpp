@@ -453,6 +453,9 @@ Page marksOf(const Visit& v, const std::string& assignment, const Told& told) {
         if (mark.kind != "adjudication") markers.insert(mark.marker);
         byAttempt[mark.attempt].push_back(std::move(mark));
     }
+    // Of who was a student of the class before: nobody sees who marked their own.
+    for (const school::PushedAttempt& own : v.books.attemptsOf(v.person.code, assignment))
+        if (!visibleOf(v, own).markers) byAttempt.erase(own.attempt.id);
     const std::set<std::string> released = teaching.released(assignment);
     std::vector<std::string> header{words()("school-teaching.attempt")};
     for (const std::string& marker : markers)

@@ -222,9 +222,10 @@ void EditorFeature::takeTeacherWork() {
     dialog_->workPage()->setTeacherWorkNote(tr("It is cut again..."));
     start(
         proving_, QString(),
-        [now, taken, isJudged, path = toPath(file)](const core::Progress& progress) {
+        [now, taken, isJudged, path = toPath(file), outside = simulator_.outside()](const core::Progress& progress) {
             const tasks::Task task = draft::taskOf(now);
-            const assessment::ProvenWork proven = assessment::provenWork(path, task, core::part(progress, 0.0, 0.8));
+            outside->read(path, core::part(progress, 0.0, 0.2));
+            const assessment::ProvenWork proven = assessment::provenWork(path, task, core::part(progress, 0.2, 0.8));
             taken->file = proven.file;
             // A session does not say of which exercise it is: its points do.
             if (isJudged)
@@ -257,8 +258,10 @@ void EditorFeature::takeWork() {
     dialog_->preparationPage()->setEnabled(false);
     start(
         making_, tr("Reading the work..."),
-        [path = toPath(file), next](const core::Progress& progress) {
-            const std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, progress);
+        [path = toPath(file), next, outside = simulator_.outside()](const core::Progress& progress) {
+            outside->read(path, core::part(progress, 0.0, 0.3));
+            const std::optional<simulation::CutTeeth> cut =
+                simulation::readCutTeeth(path, {}, true, core::part(progress, 0.3, 1.0));
             if (!cut)
                 throw core::Error("this is neither a session nor an attempt", path.string(),
                                   "name session.h5, or an attempt's folder or .handpiece file")

@@ -217,11 +217,11 @@ report::Review review(const Files& files, const std::string& title, const std::s
     return review;
 }
 
-ReadThrough readThrough(const fs::path& session) {
+ReadThrough readThrough(const fs::path& session, const core::Progress& progress) {
     const Files files{{session}, {}};
     sandbox::Bounds bounds = boundsFor(files);
     bounds.answerBytes = 4096;
-    const sandbox::Answer answer = asked("session", Json::object(), files, bounds);
+    const sandbox::Answer answer = asked("session", Json::object(), files, bounds, progress);
     const Said said(answer.text);
     return {said.count("ticks"), said.count("events"), said.count("key_frames"), answer.peakBytes};
 }

@@ -57,7 +57,7 @@ struct ReadThrough {
     std::uint64_t ticks = 0, events = 0, keyFrames = 0;
     std::uint64_t peakBytes = 0;  ///< of memory that its reader had
 };
-[[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session);
+[[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session, const core::Progress& progress = {});
 
 /// The tooth as this work leaves it, from occlusal.
 [[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);

@@ -129,18 +129,26 @@ Answer review(const Json& asked, const core::Progress& progress) {
     return answer;
 }
 
-Answer readThrough(const Json& asked, const core::Progress&) {
+Answer readThrough(const Json& asked, const core::Progress& progress) {
     std::uint64_t ticks = 0, events = 0, keyFrames = 0;
     for (const std::filesystem::path& one : sessionsOf(asked)) {
         constexpr std::size_t kStretch = 10'000;
+        const auto tell = [&](double begin, std::uint64_t done, std::uint64_t all) {
+            core::report(progress, begin + 0.5 * static_cast<double>(done) / static_cast<double>(all));
+        };
         const session::SessionReader reader(one);
         const std::string where = one.filename().string();
         (void)simulation::settingsFromJson(reader.info().settings, where);
         (void)cases::decodeCase(reader.info().tooth, where);
-        for (std::uint64_t at = 0; at < reader.size(); at += kStretch)
+        if (!reader.info().scenery.empty()) (void)cases::decodeCase(reader.info().scenery, where);
+        for (std::uint64_t at = 0; at < reader.size(); at += kStretch) {
+            tell(0.0, at, reader.size());
             (void)reader.records(at, kStretch);
-        for (std::size_t i = 0; i < reader.keyFrameTicks().size(); ++i)
+        }
+        for (std::size_t i = 0; i < reader.keyFrameTicks().size(); ++i) {
+            tell(0.5, i, reader.keyFrameTicks().size());
             (void)reader.keyFrame(i);
+        }
         ticks += reader.size(), events += reader.events().size(), keyFrames += reader.keyFrameTicks().size();
     }
     return {dumped({{"ticks", ticks}, {"events", events}, {"key_frames", keyFrames}})};

@@ -231,7 +231,11 @@ std::vector<std::byte> packed(const PackageFiles& files) {
     const zip_int64_t got = zip_source_read(source.get(), bytes.data(), bytes.size());
     zip_source_close(source.get());
     if (got < 0 || static_cast<std::uint64_t>(got) != stat.size) throw failed("the packed file is lost");
-    core::writeFile(file, bytes);
+    return bytes;
+}
+
+void writePackage(const fs::path& file, const PackageFiles& files) {
+    core::writeFile(file, packed(files));
 }
 
 void writeFolder(const fs::path& folder, const PackageFiles& files, const std::string& marker) {

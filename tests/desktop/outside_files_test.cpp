@@ -5,6 +5,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/taken_from.h"
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
@@ -30,6 +31,7 @@ class OutsideFilesTest : public ::testing::Test {
         files_ = std::make_unique<OutsideFiles>(folders(), [this](const fs::path& copy, const core::Progress&) {
             ++asked_;
             if (reader_) reader_(copy);
+            return within_;
         });
     }
     /// Of the error that reading it ends with; empty: it may be opened.
@@ -47,6 +49,7 @@ class OutsideFilesTest : public ::testing::Test {
     QTemporaryDir own_;
     std::unique_ptr<OutsideFiles> files_;
     std::function<void(const fs::path& copy)> reader_;
+    std::vector<std::string> within_;  ///< that the reader read besides
     int asked_ = 0;
 };
 
@@ -143,6 +146,30 @@ TEST_F(OutsideFilesTest, WithoutAReaderOnesOwnIsOpenedStill) {
     EXPECT_THROW(files_->read(mine), core::Error);
 }
 
+TEST_F(OutsideFilesTest, WhatIsInAPackageIsReadWithIt) {
+    begin();
+    const fs::path packed = at("usb/work.handpiece"), unpacked = at("tmp/its.h5");
+    put(packed, "PK"), put(unpacked, "a session");
+    within_ = {prepared::sha256Of(core::readFile(unpacked))};
+    EXPECT_FALSE(files_->isAtHand(packed));
+    EXPECT_EQ(idOf(packed), "");
+    EXPECT_TRUE(files_->isAtHand(packed));
+    EXPECT_EQ(textOf(core::takenFrom(unpacked)), "a session");
+    EXPECT_EQ(asked_, 1);
+    // What the program wrote is at hand at once, and opened as it was written.
+    const fs::path mine = at("desk/mine.handpiece");
+    put(mine, "PK mine");
+    files_->made(mine);
+    EXPECT_TRUE(files_->isAtHand(mine));
+    EXPECT_NE(core::takenFrom(mine), mine);
+    EXPECT_EQ(textOf(core::takenFrom(mine)), "PK mine");
+    // An exam's exercise, which the school has signed.
+    const fs::path exam = at("data/exam/sitting.handpiece");
+    put(exam, "PK");
+    EXPECT_EQ(core::takenFrom(exam), exam);
+    EXPECT_EQ(asked_, 1);
+}
+
 TEST_F(OutsideFilesTest, OfOtherKindsNothingIsAsked) {
     begin();
     put(at("tooth.stl"), "solid"), put(at("case/case.toml"), "format = 1");
@@ -182,6 +209,32 @@ TEST_F(ShellTest, ARecordingOfSomebodyElseIsReadApartAndShown) {
         << qPrintable(window().errorDialog()->text());
     EXPECT_TRUE(window().errorDialog()->text().contains(toQString(cut))) << qPrintable(window().errorDialog()->text());
     EXPECT_EQ(simulator().mode(), Simulator::Mode::replay) << "what was open stays";
+}
+
+TEST_F(ShellTest, AnExerciseOfSomebodyElseIsReadApartAndOpened) {
+    tasks::Task task;
+    task.id = "theirs";
+    task.toothCase = eggTooth(46);
+    task.toothCase.exercise.emplace();
+    task.toothCase.exercise->title["en"] = "Theirs";
+    task.voxelMm = 0.1;
+    tasks::writeTask(task, at("theirs.handpiece"));
+    cases::Case alone = eggTooth(46);
+    alone.name = "alone";
+    cases::writeCase(alone, at("alone.handpiece"));
+    startWithTooth();
+    const OutsideFiles& outside = *simulator().outside();
+    EXPECT_FALSE(outside.isAtHand(at("theirs.handpiece")));
+    drop(own_.filePath("theirs.handpiece"));
+    EXPECT_TRUE(simulator().isBusy()) << "beside the window";
+    ASSERT_TRUE(
+        waitFor([this] { return simulator().task() && simulator().task()->id == "theirs" && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().document().taskPath, at("theirs.handpiece"));
+    EXPECT_TRUE(outside.isAtHand(at("theirs.handpiece")));
+    drop(own_.filePath("alone.handpiece"));
+    ASSERT_TRUE(waitFor([this] { return simulator().document().name == "alone" && !simulator().isBusy(); }));
+    EXPECT_EQ(simulator().document().caseFile, at("alone.handpiece"));
+    EXPECT_FALSE(window().errorDialog());
 }
 
 }  // namespace

@@ -6636,6 +6636,10 @@ lingual: %4</source>
         <translation>歯を準備しています</translation>
     </message>
     <message>
+        <source>Reading %1</source>
+        <translation>%1 を読み込んでいます</translation>
+    </message>
+    <message>
         <source>Opening %1</source>
         <translation>%1 を開いています</translation>
     </message>

@@ -18,6 +18,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/taken_from.h"
 #include "handpiece/base/prepared/prepared_files.h"
+#include "handpiece/model/case/package.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -54,9 +55,9 @@ std::optional<Stamp> stampOf(const fs::path& file) {
     return Stamp{is.st_dev, is.st_ino, is.st_size, is.st_mtim, is.st_ctim};
 }
 
-bool isSessionName(const fs::path& file) {
+bool isReadApart(const fs::path& file) {
     const std::string extension = file.extension().string();
-    return extension == ".h5" || extension == ".H5";
+    return extension == ".h5" || extension == ".H5" || cases::isPackageName(file);
 }
 
 bool isBelow(const fs::path& file, const fs::path& folder) {
@@ -95,7 +96,7 @@ bool isFatal(const core::Error& e) {
 struct OutsideFiles::State {
     State(const Folders& folders, Reader how)
         : reader(std::move(how)),
-          own{folders.sessions, folders.starters},
+          own{folders.sessions, folders.starters, folders.sessions.parent_path() / "exam"},
           list(folders.sessions.parent_path() / "own-files.txt") {
         try {
             if (!core::isOurs(list)) return;
@@ -123,8 +124,11 @@ struct OutsideFiles::State {
         const std::optional<Stamp> stamp = stampOf(file);
         if (!stamp) return true;  // whoever opens it says what is wrong
         const std::lock_guard lock(mutex);
-        const auto found = copies.find(core::wholePath(file));
-        return found != copies.end() && found->second.stamp == *stamp;
+        const fs::path whole = core::wholePath(file);
+        const auto found = copies.find(whole);
+        if (found != copies.end() && found->second.stamp == *stamp) return true;
+        const auto mine = written.find(whole);
+        return mine != written.end() && mine->second == *stamp;
     }
 
     /// Where its bytes lie.
@@ -173,7 +177,10 @@ struct OutsideFiles::State {
             if (known.contains(sum) || fine.contains(sum)) return;
         }
         try {
-            reader(copy, progress);
+            const std::vector<std::string> within = reader(copy, progress);
+            const std::lock_guard lock(mutex);
+            fine.insert(sum);
+            fine.insert(within.begin(), within.end());
         } catch (const core::Error& e) {
             if (e.problem() == "cancelled") throw;
             std::error_code error;
@@ -183,8 +190,6 @@ struct OutsideFiles::State {
             if (isFatal(e)) fatal.emplace(sum, said);
             throw said;
         }
-        const std::lock_guard lock(mutex);
-        fine.insert(sum);
     }
 
     void keep(const fs::path& whole, Copy copy) {
@@ -237,6 +242,7 @@ struct OutsideFiles::State {
     std::mutex mutex;
     std::optional<core::PrivateFolder> folder;  ///< of the copies, once there is one
     std::map<fs::path, Copy> copies;
+    std::map<fs::path, Stamp> written;  ///< by this program
     std::uint64_t uses = 0;
     std::set<std::string> fine, known;  ///< SHA-256 of what was read, and of what is one's own ...
     std::list<std::string> newest;      ///< ... in the order in which it came
@@ -259,15 +265,20 @@ OutsideFiles::~OutsideFiles() {
 }
 
 bool OutsideFiles::isAtHand(const fs::path& file) const {
-    return !isSessionName(file) || state_->isKnown(file) || state_->isOwnPlace(file);
+    return !isReadApart(file) || state_->isKnown(file) || state_->isOwnPlace(file);
 }
 
 void OutsideFiles::read(const fs::path& file, const core::Progress& progress) const {
-    if (isSessionName(file)) (void)state_->placeOf(file, progress);
+    if (isReadApart(file)) (void)state_->placeOf(file, progress);
 }
 
 void OutsideFiles::made(const fs::path& file) const {
-    if (stampOf(file)) made(core::readFile(file, kMostBytes));
+    const std::optional<Stamp> stamp = stampOf(file);
+    if (!stamp) return;
+    made(core::readFile(file, kMostBytes));
+    const fs::path whole = core::wholePath(file);
+    const std::lock_guard lock(state_->mutex);
+    state_->written.insert_or_assign(whole, *stamp);
 }
 
 void OutsideFiles::made(std::span<const std::byte> bytes) const {
@@ -275,7 +286,11 @@ void OutsideFiles::made(std::span<const std::byte> bytes) const {
 }
 
 OutsideFiles::Reader OutsideFiles::sandboxReader() {
-    return [](const fs::path& copy, const core::Progress& progress) { (void)sandboxed::readThrough(copy, progress); };
+    return [](const fs::path& copy, const core::Progress& progress) {
+        if (cases::isPackageName(copy)) return sandboxed::checkPackage(copy, progress).sessions;
+        (void)sandboxed::readThrough(copy, progress);
+        return std::vector<std::string>();
+    };
 }
 
 }  // namespace handpiece::desktop

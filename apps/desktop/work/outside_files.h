@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Sessions that somebody else made: read in a process that holds nothing before this program opens them. Its own are
-/// opened as they lie. docs/sandbox.md. No widgets, any thread.
+/// Sessions and .handpiece files that somebody else made: read in a process that holds nothing before this program
+/// opens them. Its own are opened as they lie. docs/sandbox.md. No widgets, any thread.
 
 #include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "desktop/framework/settings.h"
 #include "handpiece/base/core/progress.h"
@@ -18,12 +20,13 @@ namespace handpiece::desktop {
 /// While it lives, all that this process opens goes through it (core::TakingFrom), whoever opens it: what was not read
 /// yet is read then.
 ///
-/// Own are: what lies in the folders of recordings and of made teeth and is this user's; what made() was told of, also
-/// by a program of before.
+/// Own are: what lies in the folders of recordings, of made teeth and of exams (whose exercise the school has signed)
+/// and is this user's; what made() was told of, also by a program of before.
 class OutsideFiles {
   public:
-    /// Reads a file apart; throws core::Error for what must not be opened.
-    using Reader = std::function<void(const std::filesystem::path& copy, const core::Progress& progress)>;
+    /// Reads a file apart; throws core::Error for what must not be opened. SHA-256 of what was read in it besides.
+    using Reader =
+        std::function<std::vector<std::string>(const std::filesystem::path& copy, const core::Progress& progress)>;
     explicit OutsideFiles(const Folders& folders, Reader reader = sandboxReader());
     OutsideFiles(const OutsideFiles&) = delete;
     OutsideFiles& operator=(const OutsideFiles&) = delete;

@@ -113,6 +113,9 @@ class Simulator : public QObject {
     /// Null while there is none.
     [[nodiscard]] const Touch* touch() const noexcept { return touch_.get(); }
 
+    /// Runs `then` once a file that a person named may be looked into; what is wrong with it is told by failed().
+    void readApart(const std::filesystem::path& path, std::function<void()> then);
+
     // Documents. A new one takes the place of the old one once it is ready: whoever calls asks about unsaved work
     // first.
 

@@ -74,6 +74,7 @@ LoadRequest Simulator::request() const {
     request.settings.rateHz = options_.rateHz;
     request.settings.resumed = false;
     request.settings.field = simulation::fieldSettingsAt(1e-3 * options_.voxelUm);
+    request.outside = outside_;
     return request;
 }
 
@@ -178,6 +179,14 @@ void Simulator::open(const fs::path& path, int fdi) {
     wanted.path = path;
     wanted.fdi = fdi;
     load(std::move(wanted), tr("Opening %1").arg(toQString(path.filename())));
+}
+
+void Simulator::readApart(const fs::path& path, std::function<void()> then) {
+    if (outside_->isAtHand(path)) return then();
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
+    start(
+        tr("Reading %1").arg(toQString(path.filename())),
+        [path, outside = outside_](const core::Progress& progress) { outside->read(path, progress); }, std::move(then));
 }
 
 void Simulator::openSession(const fs::path& path, bool keepsReview) {
@@ -382,6 +391,7 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
                 outside->made(bytes);
             }
             cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr, std::move(files));
+            outside->made(path);
         },
         [this, path, removedMm3, othersMm3, vanished, carried, then = std::move(then)] {
             document_.attemptFile = path;

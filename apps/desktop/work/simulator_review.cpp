@@ -81,6 +81,7 @@ void Simulator::handIn(const fs::path& path) {
                 outside->made(bytes);
             }
             cases::writeAttempt(*attempt, path, toothCase.get(), std::move(files));
+            outside->made(path);
         },
         [this, left, path, packed] {
             left->tooth.document.attemptFile = path;

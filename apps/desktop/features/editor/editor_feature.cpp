@@ -4,6 +4,7 @@
 #include <QFileInfo>
 #include <QLocale>
 #include <QMessageBox>
+#include <QPointer>
 #include <QPushButton>
 #include <QTimer>
 #include <optional>
@@ -144,8 +145,17 @@ void EditorFeature::open() {
         window_.questions.open(tr("Edit exercise"), tr("Exercises (*.handpiece exercise.toml);;All files (*)"));
     if (file.isEmpty()) return;
     if (file.endsWith(QLatin1String("exercise.toml"))) file = QFileInfo(file).absolutePath();
+    simulator_.whenFree([self = QPointer<EditorFeature>(this), path = toPath(file)] {
+        if (self)
+            self->simulator_.readApart(path, [self, path] {
+                if (self) self->edit(path);
+            });
+    });
+}
+
+void EditorFeature::edit(const fs::path& exercise) {
     try {
-        dialog_->begin(draft::contentOf(tasks::readTask(toPath(file))), toPath(file));
+        dialog_->begin(draft::contentOf(tasks::readTask(exercise)), exercise);
         show();
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
@@ -204,7 +214,11 @@ void EditorFeature::takeCase() {
         window_.questions.open(tr("Case of the exercise"), tr("Cases (*.handpiece case.toml);;All files (*)"));
     if (file.isEmpty()) return;
     if (file.endsWith(QLatin1String("case.toml"))) file = QFileInfo(file).absolutePath();
-    make(tr("Reading the case..."), [path = toPath(file)](const core::Progress&) { return cases::readCase(path); });
+    make(tr("Reading the case..."),
+         [path = toPath(file), outside = simulator_.outside()](const core::Progress& progress) {
+             outside->read(path, progress);
+             return cases::readCase(path);
+         });
 }
 
 void EditorFeature::takeTeacherWork() {
@@ -348,6 +362,7 @@ bool EditorFeature::save(bool elsewhere) {
     }
     try {
         tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
+        simulator_.outside()->made(file);
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
         return false;
@@ -364,6 +379,7 @@ void EditorFeature::tryOut() {
             // What was tried before may still be open: a file of its own each time.
             file = toPath(tried_.filePath(QStringLiteral("try-%1.handpiece").arg(++tries_)));
             tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
+            simulator_.outside()->made(file);
         }
     } catch (const core::Error& error) {
         return window_.showProblem(problemOf(error));

@@ -690,6 +690,7 @@ void PracticeFeature::handIn() {
               for (const assessment::Recording& one : done->work.work.recordings)
                   outside->made(one.path);
               course::handIn(done->work, words, path);
+              outside->made(path);
           });
 }
 

@@ -257,15 +257,16 @@ void MarkingFeature::begin() {
     const auto found = std::make_shared<Found>();
     startJob(
         tr("Looking for work"),
-        [found, wish = wish_](const core::Progress& progress) {
+        [found, wish = wish_, outside = simulator_.outside()](const core::Progress& progress) {
             const std::string exercise = toPath(wish.exercise).string();
+            outside->read(exercise, core::part(progress, 0.0, 0.3));
             found->task = tasks::readTask(exercise);
             if (wish.rubric.isEmpty() && found->task.rubric.empty())
                 throw core::Error("this exercise has no rubric", exercise, "choose one").as("exercise-without-rubric");
             found->rubric = wish.rubric.isEmpty() ? rubric::parseRubric(found->task.rubric, exercise + "/rubric.toml")
                                                   : rubric::rubricByNameOrFile(toPath(wish.rubric).string());
             rubric::requireSound(found->rubric);
-            found->works = marking::findWork(toPath(wish.folder), progress);
+            found->works = marking::findWork(toPath(wish.folder), core::part(progress, 0.3, 1.0));
         },
         [this, found] { takeDesk(wish_, std::move(found->works), std::move(found->task), std::move(found->rubric)); });
 }
@@ -352,14 +353,16 @@ void MarkingFeature::openWork(const QString& code) {
     const fs::path place = toPath(shown_.filePath(code + (isSession ? ".h5" : ".handpiece")));
     auto* job = new Job(
         tr("Opening %1").arg(code),
-        [from = shown, place, isSession](const core::Progress&) {
+        [from = shown, place, isSession, outside = simulator_.outside()](const core::Progress& progress) {
             if (core::isThere(place)) return;
+            outside->read(from, progress);
             if (isSession) return fs::create_symlink(core::wholePath(from), place);
             cases::OpenAttempt open = cases::openAttempt(from);
             open.attempt.student.clear();
             open.attempt.session.clear();
             open.attempt.recordings.clear();
             cases::writeAttempt(open.attempt, place, &open.toothCase);
+            outside->made(place);
         },
         this);
     copyJob_ = job;

@@ -9,12 +9,15 @@
 #include <nlohmann/json.hpp>
 
 #include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/app/sandboxed/sandboxed_work.h"
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/base/sandbox/sandbox.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::sandboxed {
 namespace {
@@ -74,8 +77,6 @@ class Said {
         if (!one.is_number_unsigned()) throw noAnswer();
         return one.get<std::size_t>();
     }
-
-  private:
     static std::string textOf(const Json& one, std::size_t most) {
         if (!one.is_string() || one.get_ref<const std::string&>().size() > most) throw noAnswer();
         std::string text = one;
@@ -84,6 +85,7 @@ class Said {
         return text;
     }
 
+  private:
     Json json_;
 };
 
@@ -122,6 +124,28 @@ school::Score refusedFor(const core::Error& e) {
     school::Score s;
     s.state = "refused", s.passed = "teacher", s.reason = e.problem();
     return s;
+}
+
+/// Sessions that came along with something else.
+struct Carried {
+    std::string name{};
+    std::span<const std::byte> bytes{};
+};
+constexpr std::size_t kMostCarried = 1000;
+/// As `answer` says, which must outlive them.
+std::vector<Carried> carriedIn(const Said& said, const sandbox::Answer& answer) {
+    const Json& list = said.at("sessions");
+    if (!list.is_array() || list.size() > kMostCarried) throw noAnswer();
+    std::span<const std::byte> left(answer.bytes);
+    std::vector<Carried> all;
+    for (const Json& one : list) {
+        if (!one.is_object() || !one.contains("name") || !one.contains("bytes")) throw noAnswer();
+        const std::size_t size = Said::countOf(one.at("bytes"));
+        if (size > left.size()) throw noAnswer();
+        all.push_back({Said::textOf(one.at("name"), 250), left.first(size)});
+        left = left.subspan(size);
+    }
+    return all;
 }
 
 constexpr std::size_t kMostResult = 1u << 20, kMostWords = 16'384;
@@ -224,6 +248,38 @@ ReadThrough readThrough(const fs::path& session, const core::Progress& progress)
     const sandbox::Answer answer = asked("session", Json::object(), files, bounds, progress);
     const Said said(answer.text);
     return {said.count("ticks"), said.count("events"), said.count("key_frames"), answer.peakBytes};
+}
+
+CheckedPackage checkPackage(const fs::path& file, const core::Progress& progress) {
+    constexpr double kOfItself = 0.3;  // of the work, where there are sessions in it
+    sandbox::Bounds bounds = boundsFor({{file}, {}});
+    bounds.answerBytes = kMostCarriedBytes;
+    const sandbox::Answer answer =
+        asked("package", Json::object(), {{}, file}, bounds, core::part(progress, 0.0, kOfItself));
+    const Said said(answer.text);
+    CheckedPackage checked;
+    checked.type = said.text("type", 16);
+    if (std::find(cases::kPackageTypes.begin(), cases::kPackageTypes.end(), checked.type) == cases::kPackageTypes.end())
+        throw noAnswer();
+    const std::vector<Carried> sessions = carriedIn(said, answer);
+    if (sessions.empty()) return checked;
+    const core::PrivateFolder folder;
+    for (std::size_t i = 0; i < sessions.size(); ++i) {
+        const auto share = [&](std::size_t n) {
+            return kOfItself + (1.0 - kOfItself) * static_cast<double>(n) / static_cast<double>(sessions.size());
+        };
+        const fs::path place = folder.path() / fmt::format("{}.h5", i + 1);
+        core::writeFile(place, sessions[i].bytes, {true, false});
+        checked.sessions.push_back(prepared::sha256Of(sessions[i].bytes));
+        try {
+            (void)readThrough(place, core::part(progress, share(i), share(i + 1)));
+        } catch (const core::Error& e) {
+            if (!sandbox::isFault(e)) throw;
+            throw core::Error(e.problem(), fmt::format("{} in {}", sessions[i].name, file.string()), e.remedy())
+                .as(e.id(), e.arguments());
+        }
+    }
+    return checked;
 }
 
 view::Image picture(const Files& files, int widthPx, int heightPx) {

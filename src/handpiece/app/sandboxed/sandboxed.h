@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What a school's server reads of strangers' files, each time in a process that holds nothing (base/sandbox): sessions
-/// and exercises. docs/sandbox.md.
+/// What a school's server and the window read of strangers' files, each time in a process that holds nothing
+/// (base/sandbox): sessions, exercises, attempts. docs/sandbox.md.
 ///
 /// What a file does to its reader stays there; what comes back is looked at here before it is believed to be of its
 /// kind. Whether it is true nobody but its own reader knows: a file that takes its reader over can have it say of this
@@ -58,6 +58,14 @@ struct ReadThrough {
     std::uint64_t peakBytes = 0;  ///< of memory that its reader had
 };
 [[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session, const core::Progress& progress = {});
+
+/// Reads all of a .handpiece file, be it a case, an exercise or an attempt, and all of the sessions in it, and keeps
+/// nothing of them. A case that an attempt only names is another file.
+struct CheckedPackage {
+    std::string type{};                   ///< of cases::kPackageTypes
+    std::vector<std::string> sessions{};  ///< SHA-256 of each
+};
+[[nodiscard]] CheckedPackage checkPackage(const std::filesystem::path& file, const core::Progress& progress = {});
 
 /// The tooth as this work leaves it, from occlusal.
 [[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);

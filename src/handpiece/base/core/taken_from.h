@@ -25,7 +25,7 @@ class TakingFrom {
     std::shared_ptr<const TakenFrom> ask_;
 };
 
-/// Of a session that is about to be opened; itself where nobody is to be asked.
+/// Of a session or a .handpiece file that is about to be opened; itself where nobody is to be asked.
 [[nodiscard]] std::filesystem::path takenFrom(const std::filesystem::path& file);
 
 }  // namespace handpiece::core

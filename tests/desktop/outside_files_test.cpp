@@ -108,6 +108,18 @@ TEST_F(OutsideFilesTest, WhatEndedItsReaderIsNotTriedAgain) {
         EXPECT_EQ(e.id(), "sandbox-died");
     }
     EXPECT_EQ(asked_, 1);
+    // What reads it otherwise, likewise.
+    int ran = 0;
+    for (int i = 0; i < 2; ++i)
+        EXPECT_THROW(files_->once("returned 1",
+                                  [&] {
+                                      ++ran;
+                                      throw core::Error("too slow", "").as("sandbox-slow");
+                                  }),
+                     core::Error);
+    EXPECT_EQ(ran, 1);
+    files_->once("returned 2", [&] { ++ran; });
+    EXPECT_EQ(ran, 2);
     // What is only damaged may be looked at again, and what nobody's fault was.
     reader_ = [](const fs::path& copy) {
         throw core::Error("cut short", copy.string(), "copy it").as("session-damaged", {copy.string()});

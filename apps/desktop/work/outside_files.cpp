@@ -244,9 +244,9 @@ struct OutsideFiles::State {
     std::map<fs::path, Copy> copies;
     std::map<fs::path, Stamp> written;  ///< by this program
     std::uint64_t uses = 0;
-    std::set<std::string> fine, known;  ///< SHA-256 of what was read, and of what is one's own ...
-    std::list<std::string> newest;      ///< ... in the order in which it came
-    std::map<std::string, core::Error> fatal;
+    std::set<std::string> fine, known;         ///< SHA-256 of what was read, and of what is one's own ...
+    std::list<std::string> newest;             ///< ... in the order in which it came
+    std::map<std::string, core::Error> fatal;  ///< by SHA-256, or as once() was told
     std::optional<core::TakingFrom> taking;
 };
 
@@ -270,6 +270,17 @@ bool OutsideFiles::isAtHand(const fs::path& file) const {
 
 void OutsideFiles::read(const fs::path& file, const core::Progress& progress) const {
     if (isReadApart(file)) (void)state_->placeOf(file, progress);
+}
+
+void OutsideFiles::once(const std::string& what, const std::function<void()>& reads) const {
+    state_->requireNotFatal(what);
+    try {
+        reads();
+    } catch (const core::Error& e) {
+        const std::lock_guard lock(state_->mutex);
+        if (isFatal(e)) state_->fatal.emplace(what, e);
+        throw;
+    }
 }
 
 void OutsideFiles::made(const fs::path& file) const {

@@ -39,6 +39,8 @@ class OutsideFiles {
     /// One that ended its reader is not tried again. Throws core::Error: what its reader says, sandbox::ask(),
     /// "cancelled".
     void read(const std::filesystem::path& file, const core::Progress& progress = {}) const;
+    /// Runs what reads `what` apart; where that ended its reader, it throws the same again and is not run.
+    void once(const std::string& what, const std::function<void()>& reads) const;
     /// This program wrote it, or these bytes, which others pack.
     void made(const std::filesystem::path& file) const;
     void made(std::span<const std::byte> bytes) const;

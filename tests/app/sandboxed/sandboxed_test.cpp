@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "app/simulation/live_session_fixture.h"
+#include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/proving/exam_check.h"
 #include "handpiece/app/proving/proving.h"
@@ -294,6 +295,47 @@ TEST_F(Sandboxed, APackageIsReadWithAllThatIsInIt) {
         test::errorFrom([&] { (void)readThrough(honest(), [&](double) { return ++asked < 0; }); }).value().problem(),
         "cancelled");
     EXPECT_GT(asked, 0);
+}
+
+// As a teacher's desk has it judged.
+TEST_F(Sandboxed, ReturnedWorkIsWorthTheSame) {
+    const fs::path works = folder_->path() / "works", chain = works / "chain", attempts = works / "attempt.handpiece",
+                   named = works / "named.handpiece", alone = works / "case.handpiece";
+    fs::create_directories(chain);
+    fs::copy_file(honest(), chain / "one.h5");
+    cases::Attempt attempt;
+    const cases::Case block = simulation::blockCase();
+    cases::writeCase(block, alone);
+    attempt.caseFile = alone;
+    attempt.caseKey = cases::contentKey(block);
+    attempt.state =
+        tooth::encodeState({}, simulation::makeSimulation(block, simulation::blockSettings(), false).identity());
+    attempt.voxelMm = simulation::blockSettings().field.voxelMm;
+    attempt.recordings = {{"honest.h5", true}};
+    const std::vector<std::byte> bytes = core::readFile(honest());
+    cases::writeAttempt(attempt, attempts, &block, {{"honest.h5", bytes}});
+    cases::writeAttempt(attempt, named, nullptr, {{"honest.h5", bytes}});
+    const rubric::Rubric rubric = rubric::parseRubric(kRubric, "rubric.toml");
+    for (const fs::path& work : {honest(), chain, attempts, named}) {
+        const marking::Judged apart = returned({work, exercise(), rubric::rubricToml(rubric)}),
+                              here = marking::judgeReturned(work, blockTask(), rubric, true, false);
+        EXPECT_EQ(assessment::resultJson(apart.result.assessment, apart.result.identity),
+                  assessment::resultJson(here.result.assessment, here.result.identity))
+            << work;
+        EXPECT_EQ(apart.result.proof, here.result.proof) << work;
+        EXPECT_EQ(apart.picture.width, apart.picture.rgba.empty() ? 0 : marking::kPictureWidth);
+    }
+    // Its case lies where the work has no business.
+    fs::rename(alone, folder_->path() / "elsewhere.handpiece");
+    attempt.caseFile = folder_->path() / "elsewhere.handpiece";
+    cases::writeAttempt(attempt, named, nullptr, {{"honest.h5", bytes}});
+    const Returned out{named, exercise(), rubric::rubricToml(rubric)};
+    EXPECT_TRUE(sandbox::isFault(test::errorFrom([&] { (void)returned(out); }).value()));
+    forged("no JSON", 0);
+    const Returned bad{hostile(), exercise(), rubric::rubricToml(rubric)};
+    EXPECT_TRUE(sandbox::isFault(test::errorFrom([&] { (void)returned(bad); }).value()));
+    const Returned without{honest(), exercise(), "no rubric"};
+    EXPECT_EQ(test::errorIdOf([&] { (void)returned(without); }), "sandbox-exercise");
 }
 
 TEST_F(Sandboxed, WhatIsWrongWithTheSchoolsOwnIsNoFaultOfTheWork) {

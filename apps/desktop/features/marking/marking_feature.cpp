@@ -15,6 +15,7 @@
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/desk_csv.h"
 #include "handpiece/app/marking/returned_marks.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/senses/view/occlusal.h"
@@ -305,8 +306,22 @@ void MarkingFeature::score() {
     settings.kept = desk_->folder() / kKept;
     startJob(
         tr("Scoring"),
-        [this, desk = desk_, works = desk_->works(), rubric = desk_->rubric(), task = task_,
-         settings](const core::Progress& progress) {
+        [this, desk = desk_, works = desk_->works(), rubric = desk_->rubric(), task = task_, settings,
+         outside = simulator_.outside()](const core::Progress& progress) mutable {
+            // Each work is judged in a process that holds nothing but it, the exercise and the rubric.
+            const core::PrivateFolder folder;
+            sandboxed::Returned asked{{}, folder.path() / "exercise.handpiece", rubric::rubricToml(rubric)};
+            asked.prove = settings.prove, asked.draws = settings.pictures;
+            tasks::Task plain = *task;
+            plain.teacherWork.reset();
+            tasks::writeTask(plain, asked.exercise);
+            settings.judge = [asked, outside](const marking::ReturnedWork& work, const core::Progress& its) {
+                sandboxed::Returned of = asked;
+                of.work = work.path;
+                marking::Judged judged;
+                outside->once("returned " + work.id, [&] { judged = sandboxed::returned(of, its); });
+                return judged;
+            };
             marking::scoreAll(
                 works, *task, rubric, settings, progress, [this, desk](std::size_t which, marking::Scored scored) {
                     const auto shared = std::make_shared<marking::Scored>(std::move(scored));

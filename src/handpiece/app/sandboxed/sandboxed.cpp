@@ -17,6 +17,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/base/sandbox/sandbox.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/package_type.h"
 
 namespace handpiece::sandboxed {
@@ -90,7 +91,7 @@ class Said {
 };
 
 sandbox::Answer asked(const char* work, Json request, const Files& files, const sandbox::Bounds& bounds,
-                      const core::Progress& progress = {}) {
+                      const core::Progress& progress = {}, std::span<const fs::path> besides = {}) {
     std::vector<fs::path> readable = files.sessions;
     Json sessions = Json::array();
     for (fs::path& one : readable) {
@@ -99,6 +100,8 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
     }
     const fs::path exercise = files.exercise.empty() ? fs::path() : core::wholePath(files.exercise);
     if (!exercise.empty()) readable.push_back(exercise);
+    for (const fs::path& one : besides)
+        readable.push_back(core::wholePath(one));
     request["work"] = work, request["language"] = config::words().language();
     request["sessions"] = sessions, request["exercise"] = exercise.string();
     return sandbox::ask(request.dump(-1, ' ', false, Json::error_handler_t::replace), readable, bounds, progress);
@@ -280,6 +283,72 @@ CheckedPackage checkPackage(const fs::path& file, const core::Progress& progress
         }
     }
     return checked;
+}
+
+namespace {
+
+/// A folder's files are all that lies in it.
+sandbox::Bounds boundsOf(const fs::path& work) {
+    Files files;
+    std::error_code ec;
+    if (!core::isFolder(work)) files.sessions.push_back(work);
+    for (fs::recursive_directory_iterator at(work, ec), end; !ec && at != end; at.increment(ec))
+        if (at->is_regular_file(ec)) files.sessions.push_back(at->path());
+    return boundsFor(files);
+}
+
+/// The case that an attempt names; empty where there is none in its own folder.
+fs::path beside(const fs::path& work, const std::string& named) {
+    std::error_code none, noFolder;
+    const fs::path in = fs::canonical(work.parent_path(), noFolder), is = fs::canonical(named, none);
+    if (noFolder || none || std::mismatch(in.begin(), in.end(), is.begin(), is.end()).first != in.end()) return {};
+    return cases::isPackageName(is) || core::isThere(is / "case.toml") ? is : fs::path();
+}
+
+bool isPlainName(const std::string& name) {
+    return name.size() > 3 && name.ends_with(".h5") && name.front() != '.' && name.find('/') == std::string::npos;
+}
+
+}  // namespace
+
+marking::Judged returned(const Returned& of, const core::Progress& progress) {
+    const fs::path work = core::wholePath(of.work);
+    constexpr double kUnpacking = 0.05;
+    sandbox::Bounds bounds = boundsOf(work);
+    std::vector<fs::path> besides{work};
+    std::optional<core::PrivateFolder> unpacked;
+    if (cases::isPackageName(work) || core::isThere(work / cases::kAttemptFile)) {
+        bounds.answerBytes = kMostCarriedBytes;
+        const sandbox::Answer answer =
+            asked("recordings", {{"of", work.string()}}, {}, bounds, core::part(progress, 0.0, kUnpacking), besides);
+        const Said said(answer.text);
+        unpacked.emplace();
+        for (const Carried& one : carriedIn(said, answer)) {
+            if (!isPlainName(one.name)) throw noAnswer();
+            core::writeFile(unpacked->path() / one.name, one.bytes, {true, false});
+        }
+        besides.push_back(unpacked->path());
+        if (const fs::path named = beside(work, said.text("case", 4096)); !named.empty()) besides.push_back(named);
+    }
+    bounds.answerBytes = 8u << 20;
+    const sandbox::Answer answer = asked("returned",
+                                         {{"of", work.string()},
+                                          {"unpacked", unpacked ? unpacked->path().string() : std::string()},
+                                          {"rubric", of.rubric},
+                                          {"prove", of.prove},
+                                          {"draws", of.draws}},
+                                         {{}, of.exercise}, bounds, core::part(progress, kUnpacking, 1.0), besides);
+    const Said said(answer.text);
+    marking::Judged judged{assessment::parseResult(said.text("result", kMostResult), "what was found")};
+    judged.result.proof = said.text("proof", kMostWords);
+    if (answer.bytes.empty()) return judged;
+    view::Image& picture = judged.picture;
+    picture.width = marking::kPictureWidth, picture.height = marking::kPictureHeight;
+    const std::size_t size = 4 * static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    if (answer.bytes.size() != size) throw noAnswer();
+    const auto* pixels = reinterpret_cast<const std::uint8_t*>(answer.bytes.data());
+    picture.rgba.assign(pixels, pixels + size);
+    return judged;
 }
 
 view::Image picture(const Files& files, int widthPx, int heightPx) {

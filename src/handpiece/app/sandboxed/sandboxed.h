@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/app/marking/scoring.h"
 #include "handpiece/app/report/review.h"
 #include "handpiece/base/core/progress.h"
 #include "handpiece/model/case/exercise.h"
@@ -66,6 +67,17 @@ struct CheckedPackage {
     std::vector<std::string> sessions{};  ///< SHA-256 of each
 };
 [[nodiscard]] CheckedPackage checkPackage(const std::filesystem::path& file, const core::Progress& progress = {});
+
+/// What a teacher's desk asks of work that was given back.
+struct Returned {
+    std::filesystem::path work;      ///< a session, a folder with a chain of them, an attempt
+    std::filesystem::path exercise;  ///< its file
+    std::string rubric{};            ///< its text
+    bool prove = true, draws = true;
+};
+/// As marking::judgeReturned(). Whether the result is of this exercise and rubric its caller looks at. A case that an
+/// attempt only names is read where it lies in the attempt's own folder.
+[[nodiscard]] marking::Judged returned(const Returned& of, const core::Progress& progress = {});
 
 /// The tooth as this work leaves it, from occlusal.
 [[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);

@@ -211,6 +211,31 @@ Answer package(const Json& asked, const core::Progress&) {
     return carrying.answer({{"type", cases::kPackageTypes[static_cast<std::size_t>(type)]}});
 }
 
+Answer recordings(const Json& asked, const core::Progress&) {
+    const std::filesystem::path work = asked.at("of").get<std::string>();
+    Carrying carrying;
+    std::string named;
+    if (cases::isAttempt(work)) {
+        const cases::Attempt attempt = cases::readAttempt(work);
+        carrying.addOf(work, attempt);
+        if (!holdsCase(work)) named = attempt.caseFile.string();
+    }
+    return carrying.answer({{"case", named}});
+}
+
+Answer returned(const Json& asked, const core::Progress& progress) {
+    const tasks::Task task = schoolsOwn([&] { return tasks::readTask(asked.at("exercise").get<std::string>()); });
+    const rubric::Rubric rubric =
+        schoolsOwn([&] { return rubric::parseRubric(asked.at("rubric").get<std::string>(), "the rubric"); });
+    const marking::Judged judged =
+        marking::judgeReturned(asked.at("of").get<std::string>(), task, rubric, asked.at("prove"), asked.at("draws"),
+                               asked.at("unpacked").get<std::string>(), progress);
+    const auto* pixels = reinterpret_cast<const std::byte*>(judged.picture.rgba.data());
+    return {dumped({{"result", assessment::resultJson(judged.result.assessment, judged.result.identity)},
+                    {"proof", judged.result.proof}}),
+            {pixels, pixels + judged.picture.rgba.size()}};
+}
+
 Answer picture(const Json& asked, const core::Progress& progress) {
     const tasks::Task task = tasks::readTask(asked.at("exercise").get<std::string>());
     std::vector<assessment::ChainLink> chain;
@@ -263,8 +288,11 @@ Answer studentReport(const Json& asked, const core::Progress&) {
 
 Answer answer(const std::string& request, const core::Progress& progress) {
     static const std::map<std::string, Answer (*)(const Json&, const core::Progress&)> works{
-        {"prove", prove},     {"review", review},     {"picture", picture}, {"session", readThrough},
-        {"package", package}, {"exercise", exercise}, {"pack", pack},       {"student report", studentReport}};
+        {"prove", prove},       {"review", review},
+        {"picture", picture},   {"session", readThrough},
+        {"package", package},   {"recordings", recordings},
+        {"returned", returned}, {"exercise", exercise},
+        {"pack", pack},         {"student report", studentReport}};
     const Json asked = config::requireOutsideJson<Json>(request, {.values = 10'000'000});
     const config::LanguageHere here(asked.at("language").get<std::string>());
     return works.at(asked.at("work"))(asked, progress);

@@ -351,6 +351,14 @@ void EditorFeature::cutIdeal() {
     cutting_->start();
 }
 
+/// What one made oneself is opened again without being read apart.
+void EditorFeature::write(const fs::path& file) {
+    const tasks::Task task = draft::taskOf(dialog_->draft().now());
+    tasks::writeTask(task, file);
+    simulator_.outside()->made(file);
+    if (task.teacherWork) simulator_.outside()->made(*task.teacherWork);
+}
+
 bool EditorFeature::save(bool elsewhere) {
     fs::path file = dialog_->draft().file();
     if (elsewhere || file.empty()) {
@@ -361,8 +369,7 @@ bool EditorFeature::save(bool elsewhere) {
         file = toPath(asked);
     }
     try {
-        tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
-        simulator_.outside()->made(file);
+        write(file);
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
         return false;
@@ -378,8 +385,7 @@ void EditorFeature::tryOut() {
         if (dialog_->draft().isUnsaved() || file.empty()) {
             // What was tried before may still be open: a file of its own each time.
             file = toPath(tried_.filePath(QStringLiteral("try-%1.handpiece").arg(++tries_)));
-            tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
-            simulator_.outside()->made(file);
+            write(file);
         }
     } catch (const core::Error& error) {
         return window_.showProblem(problemOf(error));

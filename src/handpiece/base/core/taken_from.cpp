@@ -7,32 +7,32 @@
 namespace handpiece::core {
 namespace {
 
-struct Asked {
+struct Standing {
     std::mutex mutex;
     std::shared_ptr<const TakenFrom> ask;
 };
-Asked& asked() {
-    static Asked one;
+Standing& standing() {
+    static Standing one;
     return one;
 }
 
 }  // namespace
 
 TakingFrom::TakingFrom(TakenFrom ask) : ask_(std::make_shared<const TakenFrom>(std::move(ask))) {
-    const std::lock_guard lock(asked().mutex);
-    asked().ask = ask_;
+    const std::lock_guard lock(standing().mutex);
+    standing().ask = ask_;
 }
 
 TakingFrom::~TakingFrom() {
-    const std::lock_guard lock(asked().mutex);
-    if (asked().ask == ask_) asked().ask.reset();
+    const std::lock_guard lock(standing().mutex);
+    if (standing().ask == ask_) standing().ask.reset();
 }
 
 std::filesystem::path takenFrom(const std::filesystem::path& file) {
     std::shared_ptr<const TakenFrom> ask;
     {
-        const std::lock_guard lock(asked().mutex);
-        ask = asked().ask;
+        const std::lock_guard lock(standing().mutex);
+        ask = standing().ask;
     }
     return ask ? (*ask)(file) : file;
 }

@@ -441,8 +441,8 @@ TEST_F(ExerciseTest, WhoLooksAtWhatWasHandedInHasNoLocksAndChangesNothing) {
     // Another start, as a teacher's.
     startWith({});
     window().openFile(toQString(file));
-    EXPECT_EQ(askedAbout_, "S-07");
     ASSERT_TRUE(waitFor([this] { return simulator().mode() == Simulator::Mode::review; }));
+    EXPECT_EQ(askedAbout_, "S-07");
     EXPECT_TRUE(part<QLabel>("exerciseStudent")->text().contains("S-07"));
     EXPECT_EQ(part<QLabel>("exerciseTitle")->text(), "Class <b>I</b> cavity");
     EXPECT_TRUE(part<QLabel>("exerciseLocked")->isHidden());

@@ -157,8 +157,10 @@ void MainWindow::openFile(const QString& file) {
     const QString path = info.suffix() == QLatin1String("toml") ? info.absolutePath() : info.absoluteFilePath();
     whenMayLeave([this, path] {
         settings_.set(QStringLiteral("files/folder"), QFileInfo(path).absolutePath());
-        for (const auto& open : openers)
-            if (open(path)) return;
+        whenRead(path, [this, path] {
+            for (const auto& open : openers)
+                if (open(path)) return;
+        });
     });
 }
 

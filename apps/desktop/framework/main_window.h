@@ -59,6 +59,9 @@ class MainWindow : public QMainWindow {
     std::function<void(std::function<void()> then)> whenMayClose = [this](std::function<void()> then) {
         whenMayLeave(std::move(then));
     };
+    /// Runs `then` once what a person named may be looked into; what must not be opened is told.
+    std::function<void(const QString& path, std::function<void()> then)> whenRead =
+        [](const QString&, const std::function<void()>& then) { then(); };
     /// The window closes for good.
     std::function<void()> closeWork = [] {};
 

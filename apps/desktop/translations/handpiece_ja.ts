@@ -1977,6 +1977,42 @@
         <translation>欠けた部分の後から再生するか、表として書き出してください。</translation>
     </message>
     <message>
+        <source>What somebody else made is not opened on this computer. Technical detail: %1</source>
+        <translation>このコンピュータでは、ほかの人が作ったファイルは開きません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Your own work can be opened. For the rest the system needs Linux 5.13 or later with Landlock, and all of the program.</source>
+        <translation>ご自分の作業は開けます。それ以外を開くには、Landlock が使える Linux 5.13 以降と、プログラム一式が必要です。</translation>
+    </message>
+    <message>
+        <source>The program that was reading this file was ended.</source>
+        <translation>このファイルを読んでいたプログラムが終了させられました。</translation>
+    </message>
+    <message>
+        <source>Open it again.</source>
+        <translation>もう一度開いてください。</translation>
+    </message>
+    <message>
+        <source>This file ended the program that reads it first. Technical detail: %1</source>
+        <translation>このファイルを先に読むプログラムが、読んでいる途中で異常終了しました。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>It is damaged, or was made to do this: take another copy of it.</source>
+        <translation>壊れているか、そうなるように作られたファイルです。別の写しを使ってください。</translation>
+    </message>
+    <message>
+        <source>The exercise, or its rubric, cannot be read. Technical detail: %1</source>
+        <translation>課題、またはそのルーブリックを読めません。技術的な詳細：%1</translation>
+    </message>
+    <message>
+        <source>Reading this file takes longer than anybody&apos;s work may.</source>
+        <translation>このファイルを読むのに、作業として許される時間を超えました。</translation>
+    </message>
+    <message>
+        <source>Reading this file takes more memory than anybody&apos;s work may.</source>
+        <translation>このファイルを読むのに、作業として許されるメモリを超えました。</translation>
+    </message>
+    <message>
         <source>%1 mm is no size for a bur.</source>
         <translation>%1 mm はバーの大きさではありません。</translation>
     </message>
@@ -2846,7 +2882,7 @@
     </message>
     <message>
         <source>These are no marks of a teacher. Technical detail: %1</source>
-        <translation>これは先生の評価のファイルではありません。技術的な詳細: %1</translation>
+        <translation>これは先生の評価のファイルではありません。技術的な詳細：%1</translation>
     </message>
     <message>
         <source>Ask your teacher for the file once more.</source>
@@ -6630,6 +6666,10 @@ lingual: %4</source>
     <message>
         <source>Preparing the tooth</source>
         <translation>歯を準備しています</translation>
+    </message>
+    <message>
+        <source>Reading %1</source>
+        <translation>%1 を読み込んでいます</translation>
     </message>
     <message>
         <source>Opening %1</source>

@@ -249,6 +249,8 @@ LoadedTooth loadTooth(const LoadRequest& request, const core::Progress& progress
     simulation::SimulationSettings settings = request.settings;
     std::optional<cases::Attempt> attempt;
     std::optional<simulation::Recovered> recovered;
+    if (const bool isMade = request.starter && request.task.empty(); request.outside && !isMade)
+        request.outside->read(request.task.empty() ? request.path : request.task, core::part(progress, 0.0, 0.4));
     const core::Progress reading = core::part(progress, 0.0, 0.5), preparing = core::part(progress, 0.5, 0.8);
     if (request.recover) {
         recovered = simulation::recover(request.path, reading);

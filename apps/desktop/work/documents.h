@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "desktop/work/outside_files.h"
 #include "handpiece/app/course/first_mouth.h"
 #include "handpiece/app/simulation/history_bytes.h"
 #include "handpiece/app/simulation/live_session.h"
@@ -116,6 +117,7 @@ struct LoadRequest {
     double speedRpm = 0.0;  ///< 0: the drive's own
     simulation::SimulationSettings settings;
     bool useCache = true;
+    std::shared_ptr<const OutsideFiles> outside{};  ///< what the file is read by first; null: it is opened as it lies
 };
 struct LoadedTooth {
     Document document;

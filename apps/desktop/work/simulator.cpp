@@ -40,6 +40,7 @@ struct Simulator::Ear {
 Simulator::Simulator(const Options& options, QObject* parent)
     : QObject(parent),
       options_(options),
+      outside_(std::make_shared<const OutsideFiles>(options.folders)),
       foot_(options.pedals),
       hands_(withFoot(options.hands, foot_)),
       shelf_(options.folders.sessions, options.shelf),

@@ -20,6 +20,7 @@
 #include "desktop/work/device_manager.h"
 #include "desktop/work/documents.h"
 #include "desktop/work/foot.h"
+#include "desktop/work/outside_files.h"
 #include "desktop/work/replay_driver.h"
 #include "desktop/work/session_shelf.h"
 #include "handpiece/app/course/finished_work.h"
@@ -112,6 +113,9 @@ class Simulator : public QObject {
     /// Null while there is none.
     [[nodiscard]] const Touch* touch() const noexcept { return touch_.get(); }
 
+    /// Runs `then` once a file that a person named may be looked into; what is wrong with it is told by failed().
+    void readApart(const std::filesystem::path& path, std::function<void()> then);
+
     // Documents. A new one takes the place of the old one once it is ready: whoever calls asks about unsaved work
     // first.
 
@@ -173,6 +177,9 @@ class Simulator : public QObject {
     void forget(const Crashed& crashed) { shelf_.settle(crashed.session); }
     void forget(const Finished& done) { shelf_.settle(done.work.session); }
     [[nodiscard]] const Folders& folders() const noexcept { return options_.folders; }
+    /// What somebody else made is read through it; jobs that open a file which a person named ask it first, with their
+    /// progress.
+    [[nodiscard]] const std::shared_ptr<const OutsideFiles>& outside() const noexcept { return outside_; }
     void cancelJob();
     /// At once, or when the work that goes on is over; the last one asked for, the others are given up.
     void whenFree(std::function<void()> what);
@@ -343,6 +350,7 @@ class Simulator : public QObject {
     [[nodiscard]] ReplayDriver::Heard replayEar();
 
     Options options_;
+    std::shared_ptr<const OutsideFiles> outside_;
     Foot foot_;
     DeviceManager hands_;
     std::shared_ptr<Hand> usedHand_;

@@ -74,6 +74,7 @@ LoadRequest Simulator::request() const {
     request.settings.rateHz = options_.rateHz;
     request.settings.resumed = false;
     request.settings.field = simulation::fieldSettingsAt(1e-3 * options_.voxelUm);
+    request.outside = outside_;
     return request;
 }
 
@@ -180,13 +181,23 @@ void Simulator::open(const fs::path& path, int fdi) {
     load(std::move(wanted), tr("Opening %1").arg(toQString(path.filename())));
 }
 
+void Simulator::readApart(const fs::path& path, std::function<void()> then) {
+    if (outside_->isAtHand(path)) return then();
+    if (job_ || !may(exercise::Operation::elsewhere)) return;
+    start(
+        tr("Reading %1").arg(toQString(path.filename())),
+        [path, outside = outside_](const core::Progress& progress) { outside->read(path, progress); }, std::move(then));
+}
+
 void Simulator::openSession(const fs::path& path, bool keepsReview) {
     if (job_) return;
     const auto player = std::make_shared<std::unique_ptr<simulation::SessionPlayer>>();
     start(
         tr("Opening %1").arg(toQString(path.filename())),
-        [player, path](const core::Progress& progress) {
-            *player = std::make_unique<simulation::SessionPlayer>(path, true, progress);
+        [player, path, outside = outside_](const core::Progress& progress) {
+            const double read = outside->isAtHand(path) ? 0.0 : 0.5;
+            outside->read(path, core::part(progress, 0.0, read));
+            *player = std::make_unique<simulation::SessionPlayer>(path, true, core::part(progress, read, 1.0));
         },
         [this, player, path, keepsReview] {
             std::shared_ptr<Left> left = std::move(leftFor_);
@@ -369,15 +380,18 @@ void Simulator::saveAs(const fs::path& path, std::function<void()> then) {
     const auto carried = std::make_shared<std::set<std::string>>();
     start(
         tr("Saving"),
-        [attempt, packed, path, carried, toothCase = toothCase_, recordings = document_.recordings,
+        [attempt, packed, path, carried, outside = outside_, toothCase = toothCase_, recordings = document_.recordings,
          isJudged = document_.task != nullptr](const core::Progress& p) {
             // What came with the attempt goes on with it: it may lie in the very file that is replaced. Of an exercise
             // all sittings before this one: the shelf keeps none for ever.
             std::size_t leftOut = 0;
             cases::PackageFiles files = recordingBytes(recordings, !isJudged, leftOut, p);
-            for (const auto& [name, bytes] : files)
+            for (const auto& [name, bytes] : files) {
                 carried->insert(name);
+                outside->made(bytes);
+            }
             cases::writeAttempt(*attempt, path, packed ? toothCase.get() : nullptr, std::move(files));
+            outside->made(path);
         },
         [this, path, removedMm3, othersMm3, vanished, carried, then = std::move(then)] {
             document_.attemptFile = path;
@@ -449,7 +463,10 @@ void Simulator::copyRecording(const fs::path& file) {
     if (job_ || !isRecorded() || !may(exercise::Operation::elsewhere)) return;
     start(
         tr("Copying the recording"),
-        [from = shelf_.current(), file](const core::Progress&) { core::writeFile(file, core::readFile(from)); },
+        [from = shelf_.current(), file, outside = outside_](const core::Progress&) {
+            core::writeFile(file, core::readFile(from));
+            outside->made(file);
+        },
         [this, file] { emit saved(toQString(file)); });
 }
 

@@ -72,13 +72,16 @@ void Simulator::handIn(const fs::path& path) {
     const auto packed = std::make_shared<Packed>();
     start(
         tr("Handing in"),
-        [attempt, path, packed, recordings = left->tooth.document.recordings,
+        [attempt, path, packed, outside = outside_, recordings = left->tooth.document.recordings,
          toothCase = left->tooth.toothCase](const core::Progress& progress) {
             cases::PackageFiles files = recordingBytes(recordings, false, packed->leftOut, progress);
             packed->count = files.size();
-            for (const auto& [name, bytes] : files)
+            for (const auto& [name, bytes] : files) {
                 packed->bytes += bytes.size();
+                outside->made(bytes);
+            }
             cases::writeAttempt(*attempt, path, toothCase.get(), std::move(files));
+            outside->made(path);
         },
         [this, left, path, packed] {
             left->tooth.document.attemptFile = path;

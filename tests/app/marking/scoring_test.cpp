@@ -167,6 +167,30 @@ TEST_F(MarkingFolder, ScoresWhatCanBeScoredAndSaysWhyTheRestCannot) {
                 HasSubstr("another rubric"));
 }
 
+TEST_F(MarkingFolder, WhatAnotherProcessJudgedIsHeldToTheExercise) {
+    writeAttempt("good.handpiece", 1.5);
+    const std::vector<ReturnedWork> found = findWork(works());
+    ASSERT_EQ(found.size(), 1u);
+    tasks::Task judgedBy = blockTask(1.8);
+    rubric::Rubric judgedWith = rubric_;
+    int asked = 0;
+    ScoreSettings settings;
+    settings.kept = folder_.path() / "kept";
+    settings.judge = [&](const ReturnedWork& work, const core::Progress& progress) {
+        ++asked;
+        return judgeReturned(work.path, judgedBy, judgedWith, true, false, {}, progress);
+    };
+    EXPECT_THAT(scoreReturned(found[0], task_, rubric_, settings).problem(), HasSubstr("another exercise"));
+    judgedBy = task_;
+    judgedWith.passMark = 99.0;
+    EXPECT_THAT(scoreReturned(found[0], task_, rubric_, settings).problem(), HasSubstr("another rubric"));
+    judgedWith = rubric_;
+    EXPECT_EQ(scoreReturned(found[0], task_, rubric_, settings).problem(), "");
+    EXPECT_EQ(asked, 3);
+    EXPECT_EQ(scoreReturned(found[0], task_, rubric_, settings).problem(), "") << "kept";
+    EXPECT_EQ(asked, 3);
+}
+
 TEST_F(MarkingFolder, IsCancelled) {
     writeAttempt("one.handpiece", 1.5);
     writeAttempt("two.handpiece", 1.7);

@@ -16,11 +16,15 @@
 #include <thread>
 
 #include "app/simulation/live_session_fixture.h"
+#include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/proving/exam_check.h"
 #include "handpiece/app/proving/proving.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/base/sandbox/sandbox.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/tooth/state_file.h"
 #include "handpiece/record/session/session_reader.h"
 #include "handpiece/record/session/session_writer.h"
 #include "support/error_of.h"
@@ -249,6 +253,89 @@ TEST_F(Sandboxed, AnExerciseIsReadAndPackedAnew) {
     EXPECT_EQ(test::errorFrom([&] { (void)pack(again, 64u << 20); }).value().id(), "not-a-package");
     const std::string page = studentReport(exercise(), proved(honest()).score.result, kRubric);
     EXPECT_THAT(page, HasSubstr("<html"));
+}
+
+// As the window has it read that opens it afterwards.
+TEST_F(Sandboxed, APackageIsReadWithAllThatIsInIt) {
+    EXPECT_EQ(checkPackage(exercise()).type, "exercise");
+    EXPECT_THAT(checkPackage(exercise()).sessions, IsEmpty());
+    const fs::path file = folder_->path() / "checked.handpiece", beside = folder_->path() / "beside.handpiece";
+    const std::vector<std::byte> honestBytes = core::readFile(honest());
+    tasks::Task task = blockTask();
+    task.teacherWork = std::make_shared<const std::vector<std::byte>>(honestBytes);
+    tasks::writeTask(task, file);
+    EXPECT_THAT(checkPackage(file).sessions, ElementsAre(prepared::sha256Of(honestBytes)));
+
+    const cases::Case block = simulation::blockCase();
+    cases::writeCase(block, beside);
+    EXPECT_EQ(checkPackage(beside).type, "case");
+    cases::Attempt attempt;
+    attempt.caseFile = beside;
+    attempt.caseKey = cases::contentKey(block);
+    attempt.caseName = block.name;
+    attempt.state =
+        tooth::encodeState({}, simulation::makeSimulation(block, simulation::blockSettings(), false).identity());
+    attempt.voxelMm = simulation::blockSettings().field.voxelMm;
+    attempt.recordings = {{"honest.h5", true}, {"gone.h5", false}};
+    cases::writeAttempt(attempt, file, &block, {{"honest.h5", honestBytes}});
+    const CheckedPackage checked = checkPackage(file);
+    EXPECT_EQ(checked.type, "attempt");
+    EXPECT_THAT(checked.sessions, ElementsAre(prepared::sha256Of(honestBytes)));
+    // The case that it only names is no part of it.
+    cases::writeAttempt(attempt, file, nullptr, {{"honest.h5", honestBytes}});
+    EXPECT_THAT(checkPackage(file).sessions, testing::SizeIs(1));
+    // A session in it that is none, and no package at all.
+    forged("no JSON", 0);
+    cases::writeAttempt(attempt, file, &block, {{"honest.h5", core::readFile(hostile())}});
+    EXPECT_THAT(test::errorOf([&] { (void)checkPackage(file); }), HasSubstr("honest.h5 in "));
+    write(file, "PK no package at all");
+    EXPECT_EQ(test::errorIdOf([&] { (void)checkPackage(file); }), "not-a-package");
+    int asked = 0;
+    EXPECT_EQ(
+        test::errorFrom([&] { (void)readThrough(honest(), [&](double) { return ++asked < 0; }); }).value().problem(),
+        "cancelled");
+    EXPECT_GT(asked, 0);
+}
+
+// As a teacher's desk has it judged.
+TEST_F(Sandboxed, ReturnedWorkIsWorthTheSame) {
+    const fs::path works = folder_->path() / "works", chain = works / "chain", attempts = works / "attempt.handpiece",
+                   named = works / "named.handpiece", alone = works / "case.handpiece";
+    fs::create_directories(chain);
+    fs::copy_file(honest(), chain / "one.h5");
+    cases::Attempt attempt;
+    const cases::Case block = simulation::blockCase();
+    cases::writeCase(block, alone);
+    attempt.caseFile = alone;
+    attempt.caseKey = cases::contentKey(block);
+    attempt.state =
+        tooth::encodeState({}, simulation::makeSimulation(block, simulation::blockSettings(), false).identity());
+    attempt.voxelMm = simulation::blockSettings().field.voxelMm;
+    attempt.recordings = {{"honest.h5", true}};
+    const std::vector<std::byte> bytes = core::readFile(honest());
+    cases::writeAttempt(attempt, attempts, &block, {{"honest.h5", bytes}});
+    cases::writeAttempt(attempt, named, nullptr, {{"honest.h5", bytes}});
+    const rubric::Rubric rubric = rubric::parseRubric(kRubric, "rubric.toml");
+    for (const fs::path& work : {honest(), chain, attempts, named}) {
+        const marking::Judged apart = returned({work, exercise(), rubric::rubricToml(rubric)}),
+                              here = marking::judgeReturned(work, blockTask(), rubric, true, false);
+        EXPECT_EQ(assessment::resultJson(apart.result.assessment, apart.result.identity),
+                  assessment::resultJson(here.result.assessment, here.result.identity))
+            << work;
+        EXPECT_EQ(apart.result.proof, here.result.proof) << work;
+        EXPECT_EQ(apart.picture.width, apart.picture.rgba.empty() ? 0 : marking::kPictureWidth);
+    }
+    // Its case lies where the work has no business.
+    fs::rename(alone, folder_->path() / "elsewhere.handpiece");
+    attempt.caseFile = folder_->path() / "elsewhere.handpiece";
+    cases::writeAttempt(attempt, named, nullptr, {{"honest.h5", bytes}});
+    const Returned out{named, exercise(), rubric::rubricToml(rubric)};
+    EXPECT_TRUE(sandbox::isFault(test::errorFrom([&] { (void)returned(out); }).value()));
+    forged("no JSON", 0);
+    const Returned bad{hostile(), exercise(), rubric::rubricToml(rubric)};
+    EXPECT_TRUE(sandbox::isFault(test::errorFrom([&] { (void)returned(bad); }).value()));
+    const Returned without{honest(), exercise(), "no rubric"};
+    EXPECT_EQ(test::errorIdOf([&] { (void)returned(without); }), "sandbox-exercise");
 }
 
 TEST_F(Sandboxed, WhatIsWrongWithTheSchoolsOwnIsNoFaultOfTheWork) {

@@ -4,6 +4,7 @@
 #include <QFileInfo>
 #include <QLocale>
 #include <QMessageBox>
+#include <QPointer>
 #include <QPushButton>
 #include <QTimer>
 #include <optional>
@@ -144,8 +145,17 @@ void EditorFeature::open() {
         window_.questions.open(tr("Edit exercise"), tr("Exercises (*.handpiece exercise.toml);;All files (*)"));
     if (file.isEmpty()) return;
     if (file.endsWith(QLatin1String("exercise.toml"))) file = QFileInfo(file).absolutePath();
+    simulator_.whenFree([self = QPointer<EditorFeature>(this), path = toPath(file)] {
+        if (self)
+            self->simulator_.readApart(path, [self, path] {
+                if (self) self->edit(path);
+            });
+    });
+}
+
+void EditorFeature::edit(const fs::path& exercise) {
     try {
-        dialog_->begin(draft::contentOf(tasks::readTask(toPath(file))), toPath(file));
+        dialog_->begin(draft::contentOf(tasks::readTask(exercise)), exercise);
         show();
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
@@ -204,7 +214,11 @@ void EditorFeature::takeCase() {
         window_.questions.open(tr("Case of the exercise"), tr("Cases (*.handpiece case.toml);;All files (*)"));
     if (file.isEmpty()) return;
     if (file.endsWith(QLatin1String("case.toml"))) file = QFileInfo(file).absolutePath();
-    make(tr("Reading the case..."), [path = toPath(file)](const core::Progress&) { return cases::readCase(path); });
+    make(tr("Reading the case..."),
+         [path = toPath(file), outside = simulator_.outside()](const core::Progress& progress) {
+             outside->read(path, progress);
+             return cases::readCase(path);
+         });
 }
 
 void EditorFeature::takeTeacherWork() {
@@ -222,9 +236,10 @@ void EditorFeature::takeTeacherWork() {
     dialog_->workPage()->setTeacherWorkNote(tr("It is cut again..."));
     start(
         proving_, QString(),
-        [now, taken, isJudged, path = toPath(file)](const core::Progress& progress) {
+        [now, taken, isJudged, path = toPath(file), outside = simulator_.outside()](const core::Progress& progress) {
             const tasks::Task task = draft::taskOf(now);
-            const assessment::ProvenWork proven = assessment::provenWork(path, task, core::part(progress, 0.0, 0.8));
+            outside->read(path, core::part(progress, 0.0, 0.2));
+            const assessment::ProvenWork proven = assessment::provenWork(path, task, core::part(progress, 0.2, 0.8));
             taken->file = proven.file;
             // A session does not say of which exercise it is: its points do.
             if (isJudged)
@@ -257,8 +272,10 @@ void EditorFeature::takeWork() {
     dialog_->preparationPage()->setEnabled(false);
     start(
         making_, tr("Reading the work..."),
-        [path = toPath(file), next](const core::Progress& progress) {
-            const std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, progress);
+        [path = toPath(file), next, outside = simulator_.outside()](const core::Progress& progress) {
+            outside->read(path, core::part(progress, 0.0, 0.3));
+            const std::optional<simulation::CutTeeth> cut =
+                simulation::readCutTeeth(path, {}, true, core::part(progress, 0.3, 1.0));
             if (!cut)
                 throw core::Error("this is neither a session nor an attempt", path.string(),
                                   "name session.h5, or an attempt's folder or .handpiece file")
@@ -334,6 +351,14 @@ void EditorFeature::cutIdeal() {
     cutting_->start();
 }
 
+/// What one made oneself is opened again without being read apart.
+void EditorFeature::write(const fs::path& file) {
+    const tasks::Task task = draft::taskOf(dialog_->draft().now());
+    tasks::writeTask(task, file);
+    simulator_.outside()->made(file);
+    if (task.teacherWork) simulator_.outside()->made(*task.teacherWork);
+}
+
 bool EditorFeature::save(bool elsewhere) {
     fs::path file = dialog_->draft().file();
     if (elsewhere || file.empty()) {
@@ -344,7 +369,7 @@ bool EditorFeature::save(bool elsewhere) {
         file = toPath(asked);
     }
     try {
-        tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
+        write(file);
     } catch (const core::Error& error) {
         window_.showProblem(problemOf(error));
         return false;
@@ -360,7 +385,7 @@ void EditorFeature::tryOut() {
         if (dialog_->draft().isUnsaved() || file.empty()) {
             // What was tried before may still be open: a file of its own each time.
             file = toPath(tried_.filePath(QStringLiteral("try-%1.handpiece").arg(++tries_)));
-            tasks::writeTask(draft::taskOf(dialog_->draft().now()), file);
+            write(file);
         }
     } catch (const core::Error& error) {
         return window_.showProblem(problemOf(error));

@@ -39,6 +39,8 @@ class EditorFeature : public Feature {
     [[nodiscard]] bool mayLeave();
     void show();
     void open();
+    void edit(const std::filesystem::path& exercise);
+    void write(const std::filesystem::path& file);
     void make(const QString& title, std::function<cases::Case(const core::Progress&)> how);
     /// Runs in the background; one that fails says so. `end`: however it ended, and before `done`.
     void start(std::unique_ptr<Job>& job, const QString& title, std::function<void(const core::Progress&)> how,

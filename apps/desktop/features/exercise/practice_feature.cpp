@@ -573,8 +573,10 @@ void PracticeFeature::showTeacherWork(const std::optional<measures::Evidence>& a
     const fs::path session = teacherFolder_->path() / tasks::kTeacherWorkFile;
     findingTeacher_ = new Job(
         tr("Looking into your teacher's work"),
-        [there, session, work = teacherWork_, voxelMm = done_->work.task->voxelMm](const core::Progress& progress) {
+        [there, session, work = teacherWork_, voxelMm = done_->work.task->voxelMm,
+         outside = simulator_.outside()](const core::Progress& progress) {
             if (!core::isThere(session)) core::writeFile(session, *work, {true, false});
+            outside->read(session, progress);
             if (!there->placeMm) return;
             std::vector<measures::Measured> place(1);
             place.front().evidence.push_back(*there);
@@ -683,9 +685,13 @@ void PracticeFeature::handIn() {
                        : tr("Handed in: %1, with its tooth. No recordings are in it, because one of them is missing. "
                             "Give this file to your teacher.")
                              .arg(file);
-    write(tr("Handing in"), told, file, [done = done_, words, path = toPath(file)](const core::Progress&) {
-        course::handIn(done->work, words, path);
-    });
+    write(tr("Handing in"), told, file,
+          [done = done_, words, path = toPath(file), outside = simulator_.outside()](const core::Progress&) {
+              for (const assessment::Recording& one : done->work.work.recordings)
+                  outside->made(one.path);
+              course::handIn(done->work, words, path);
+              outside->made(path);
+          });
 }
 
 }  // namespace handpiece::desktop

@@ -71,6 +71,12 @@ FilesFeature::FilesFeature(const FeatureContext& context)
     window_.questions.unsaved = [this] { return askUnsaved(); };
     window_.whenMayLeave = [this](std::function<void()> then) { leave(std::move(then)); };
     window_.closeWork = [this] { simulator_.close(); };
+    window_.whenRead = [this](const QString& path, std::function<void()> then) {
+        // Another window may be there by then.
+        simulator_.readApart(toPath(path), [self = QPointer<FilesFeature>(this), then = std::move(then)] {
+            if (self) then();
+        });
+    };
     connect(&window_, &MainWindow::problemShown, this, &FilesFeature::offerToMend);
     window_.openers.push_back([this](const QString& path) {
         lastOpened_ = path;

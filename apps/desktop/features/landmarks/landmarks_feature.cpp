@@ -411,13 +411,17 @@ void LandmarksFeature::save(std::function<void()> then) {
         if (file.isEmpty()) return;
         place = toPath(file);
     }
-    job_ = std::make_unique<Job>(tr("Saving the landmarks"),
-                                 [place, isOwn, toothCase = toothCase_, marks = marks_](const core::Progress&) {
-                                     if (isOwn) return cases::writeLandmarks(place, marks);
-                                     cases::Case changed = *toothCase;
-                                     changed.landmarks = marks;
-                                     cases::writeCase(changed, place);
-                                 });
+    job_ = std::make_unique<Job>(tr("Saving the landmarks"), [place, isOwn, toothCase = toothCase_, marks = marks_,
+                                                              outside = simulator_.outside()](const core::Progress&) {
+        if (isOwn) {
+            cases::writeLandmarks(place, marks);
+        } else {
+            cases::Case changed = *toothCase;
+            changed.landmarks = marks;
+            cases::writeCase(changed, place);
+        }
+        outside->made(place);
+    });
     const auto end = [this] {
         job_.release()->deleteLater();
         refreshPanel();

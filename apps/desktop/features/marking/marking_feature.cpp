@@ -15,6 +15,7 @@
 #include "handpiece/app/assessment/score_work.h"
 #include "handpiece/app/marking/desk_csv.h"
 #include "handpiece/app/marking/returned_marks.h"
+#include "handpiece/app/sandboxed/sandboxed.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/senses/view/occlusal.h"
@@ -257,15 +258,16 @@ void MarkingFeature::begin() {
     const auto found = std::make_shared<Found>();
     startJob(
         tr("Looking for work"),
-        [found, wish = wish_](const core::Progress& progress) {
+        [found, wish = wish_, outside = simulator_.outside()](const core::Progress& progress) {
             const std::string exercise = toPath(wish.exercise).string();
+            outside->read(exercise, core::part(progress, 0.0, 0.3));
             found->task = tasks::readTask(exercise);
             if (wish.rubric.isEmpty() && found->task.rubric.empty())
                 throw core::Error("this exercise has no rubric", exercise, "choose one").as("exercise-without-rubric");
             found->rubric = wish.rubric.isEmpty() ? rubric::parseRubric(found->task.rubric, exercise + "/rubric.toml")
                                                   : rubric::rubricByNameOrFile(toPath(wish.rubric).string());
             rubric::requireSound(found->rubric);
-            found->works = marking::findWork(toPath(wish.folder), progress);
+            found->works = marking::findWork(toPath(wish.folder), core::part(progress, 0.3, 1.0));
         },
         [this, found] { takeDesk(wish_, std::move(found->works), std::move(found->task), std::move(found->rubric)); });
 }
@@ -304,8 +306,22 @@ void MarkingFeature::score() {
     settings.kept = desk_->folder() / kKept;
     startJob(
         tr("Scoring"),
-        [this, desk = desk_, works = desk_->works(), rubric = desk_->rubric(), task = task_,
-         settings](const core::Progress& progress) {
+        [this, desk = desk_, works = desk_->works(), rubric = desk_->rubric(), task = task_, settings,
+         outside = simulator_.outside()](const core::Progress& progress) mutable {
+            // Each work is judged in a process that holds nothing but it, the exercise and the rubric.
+            const core::PrivateFolder folder;
+            sandboxed::Returned asked{{}, folder.path() / "exercise.handpiece", rubric::rubricToml(rubric)};
+            asked.prove = settings.prove, asked.draws = settings.pictures;
+            tasks::Task plain = *task;
+            plain.teacherWork.reset();
+            tasks::writeTask(plain, asked.exercise);
+            settings.judge = [asked, outside](const marking::ReturnedWork& work, const core::Progress& its) {
+                sandboxed::Returned of = asked;
+                of.work = work.path;
+                marking::Judged judged;
+                outside->once("returned " + work.id, [&] { judged = sandboxed::returned(of, its); });
+                return judged;
+            };
             marking::scoreAll(
                 works, *task, rubric, settings, progress, [this, desk](std::size_t which, marking::Scored scored) {
                     const auto shared = std::make_shared<marking::Scored>(std::move(scored));
@@ -352,14 +368,16 @@ void MarkingFeature::openWork(const QString& code) {
     const fs::path place = toPath(shown_.filePath(code + (isSession ? ".h5" : ".handpiece")));
     auto* job = new Job(
         tr("Opening %1").arg(code),
-        [from = shown, place, isSession](const core::Progress&) {
+        [from = shown, place, isSession, outside = simulator_.outside()](const core::Progress& progress) {
             if (core::isThere(place)) return;
+            outside->read(from, progress);
             if (isSession) return fs::create_symlink(core::wholePath(from), place);
             cases::OpenAttempt open = cases::openAttempt(from);
             open.attempt.student.clear();
             open.attempt.session.clear();
             open.attempt.recordings.clear();
             cases::writeAttempt(open.attempt, place, &open.toothCase);
+            outside->made(place);
         },
         this);
     copyJob_ = job;

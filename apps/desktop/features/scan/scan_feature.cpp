@@ -4,6 +4,8 @@
 #include <QDir>
 #include <QFileInfo>
 
+#include "desktop/work/simulator.h"
+
 namespace handpiece::desktop {
 namespace {
 
@@ -48,6 +50,8 @@ void ScanFeature::open(const QString& path) {
             if (wizard_) wizard_->close();
             window_.raise();
             window_.activateWindow();
+            // The wizard wrote it.
+            simulator_.outside()->made(toPath(place));
             window_.openFile(place);
         });
     }

@@ -51,16 +51,22 @@ Recording recordingAt(const fs::path& path) {
 /// Those that came along with attempts are put where they can be read.
 class Unpacked {
   public:
+    /// `there`: where somebody put them already; empty: nobody did.
+    explicit Unpacked(fs::path there = {}) : there_(std::move(there)) {}
     Recording at(const ChainLink& link) {
         if (!link.isPacked) return recordingAt(link.in);
+        const std::string name = fmt::format("{} of {}", link.name, link.in.string());
+        if (const fs::path place = there_ / link.name; !there_.empty())
+            return {place, name, hashOf(core::readFile(place)), {}};
         if (!folder_) folder_ = std::make_shared<const core::PrivateFolder>();
         const std::vector<std::byte> bytes = cases::readRecording(link.in, link.name);
         const fs::path place = folder_->path() / link.name;
         core::writeFile(place, bytes, {true, false});
-        return {place, fmt::format("{} of {}", link.name, link.in.string()), hashOf(bytes), folder_};
+        return {place, name, hashOf(bytes), folder_};
     }
 
   private:
+    fs::path there_;
     std::shared_ptr<const core::PrivateFolder> folder_;
 };
 
@@ -251,7 +257,8 @@ Work workOfFolder(const fs::path& folder, const tasks::Task& task, bool prove, c
                        "{} goes on from a tooth that no other session here leaves: one is missing before it");
 }
 
-Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
+Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, const fs::path& unpackedIn,
+                   const core::Progress& progress) {
     const cases::OpenAttempt open = cases::openAttempt(path);
     requireSame(path, cases::caseKey(open.toothCase), open.attempt.voxelMm, task);
     std::optional<simulation::CutTeeth> cut = simulation::readCutTeeth(path, {}, true, core::part(progress, 0.0, 0.1));
@@ -265,7 +272,7 @@ Work workOfAttempt(const fs::path& path, const tasks::Task& task, bool prove, co
         work.proof = fmt::format("its session {} did not come along", missing->name);
         work.noHand = work.proof;
     } else {
-        Unpacked unpacked;
+        Unpacked unpacked(unpackedIn);
         std::vector<Recording> recordings;
         for (const cases::Attempt::Recording& one : named)
             recordings.push_back(unpacked.at({one.name, path, true}));
@@ -322,12 +329,13 @@ std::string workHash(const fs::path& work) {
     return rubric::hashText(hasher.value());
 }
 
-Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress) {
+Work readWork(const fs::path& path, const tasks::Task& task, bool prove, const core::Progress& progress,
+              const fs::path& unpacked) {
     requireThere(path);
     std::error_code ec;
     const bool isFolder = fs::is_directory(path, ec);
     if (path.extension() == ".h5" && !isFolder) return workOfSession(path, task, prove, progress);
-    if (cases::isAttempt(path)) return workOfAttempt(path, task, prove, progress);
+    if (cases::isAttempt(path)) return workOfAttempt(path, task, prove, unpacked, progress);
     if (isFolder && !sessionsIn(path).empty()) return workOfFolder(path, task, prove, progress);
     throw core::Error("this is neither a session nor an attempt", path.string(),
                       "name session.h5, a folder of sessions, an attempt's folder or a .handpiece file");

@@ -41,9 +41,10 @@ struct Work {
 /// one that does not come to the same tooth, or is of another engine, is taken from its last key frame and says so.
 /// Where a session of a chain is missing, or is another tooth than the attempt, it is not proven and has no measures of
 /// the hand. Throws core::Error: none of these; work on another tooth than the exercise's, or in another voxel; a
-/// folder with sessions of several works.
+/// folder with sessions of several works. `unpacked`: a folder in which the sessions that came along with an attempt
+/// lie already, under their names; empty: they are unpacked.
 [[nodiscard]] Work readWork(const std::filesystem::path& path, const tasks::Task& task, bool prove = true,
-                            const core::Progress& progress = {});
+                            const core::Progress& progress = {}, const std::filesystem::path& unpacked = {});
 
 /// A teacher's own work on an exercise (one session, .h5), as its file may carry it. Nothing in a session says of which
 /// exercise it is: who takes it may hold `work` against the task. Throws core::Error: no session, of another tooth or

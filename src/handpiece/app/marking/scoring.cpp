@@ -43,6 +43,7 @@ struct Kept {
         : folder(settings.kept) {
         core::Hasher hasher;
         hasher.add(std::string_view(work.id));
+        hasher.add(std::string_view(task.id));  // what was handed in for another is refused
         hasher.add(tasks::contentHash(task));
         hasher.add(rubric::hashOf(rubric));
         hasher.add(core::kEngineRevision);
@@ -86,24 +87,26 @@ struct Kept {
 
 namespace {
 
-constexpr int kPictureWidth = 192, kPictureHeight = 144;
+/// Throws core::Error: it is of another exercise, by another rubric.
+void requireOf(const assessment::Result& result, const tasks::Task& task, const rubric::Rubric& rubric,
+               const fs::path& path) {
+    if (result.identity.exerciseHash != rubric::hashText(tasks::contentHash(task)))
+        throw core::Error("this is a result of another exercise", path.string()).as("other-result");
+    if (result.assessment.rubricHash != rubric::hashOf(rubric))
+        throw core::Error(
+            fmt::format("this is a result by another rubric: {} version {}, hash {}", result.assessment.rubric,
+                        result.assessment.rubricVersion, rubric::hashText(result.assessment.rubricHash)),
+            path.string())
+            .as("other-rubric", {result.assessment.rubric, result.assessment.rubricVersion});
+    if (!fits(result.assessment, rubric))
+        throw core::Error("this result has other criteria than its rubric", path.string()).as("other-criteria");
+}
 
 Scored readLoneResult(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric) {
     const std::vector<std::byte> bytes = core::readFile(work.path, 8u << 20);
     assessment::Result result =
         assessment::parseResult({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, work.path.string());
-    if (result.identity.exerciseHash != rubric::hashText(tasks::contentHash(task)))
-        return Scored::failed(
-            core::Error("this is a result of another exercise", work.path.string()).as("other-result"));
-    if (result.assessment.rubricHash != rubric::hashOf(rubric))
-        return Scored::failed(core::Error(fmt::format("this is a result by another rubric: {} version {}, hash {}",
-                                                      result.assessment.rubric, result.assessment.rubricVersion,
-                                                      rubric::hashText(result.assessment.rubricHash)),
-                                          work.path.string())
-                                  .as("other-rubric", {result.assessment.rubric, result.assessment.rubricVersion}));
-    if (!fits(result.assessment, rubric))
-        return Scored::failed(
-            core::Error("this result has other criteria than its rubric", work.path.string()).as("other-criteria"));
+    requireOf(result, task, rubric, work.path);
     // Who wrote it nobody can tell.
     result.identity.proven = false;
     result.proof = "the result came without the work that it is of";
@@ -161,6 +164,22 @@ Scored Scored::of(assessment::Result result, view::Image picture) {
     return scored;
 }
 
+Judged judgeReturned(const fs::path& work, const tasks::Task& task, const rubric::Rubric& rubric, bool prove,
+                     bool pictures, const fs::path& unpacked, const core::Progress& progress) {
+    requireSameExercise(work, task);
+    const assessment::Work done = assessment::readWork(work, task, prove, core::part(progress, 0.0, 0.8), unpacked);
+    core::report(progress, 0.8);
+    Judged judged{assessment::scoreWork(done, task, rubric)};
+    core::report(progress, 0.95);
+    if (!pictures) return judged;
+    try {
+        judged.picture = pictureOf(done, task.toothCase.buccalSign, kPictureWidth, kPictureHeight);
+    } catch (const core::Error&) {
+        judged.picture = {};  // no OpenGL: the score stands without a picture
+    }
+    return judged;
+}
+
 Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const rubric::Rubric& rubric,
                      const ScoreSettings& settings, const core::Progress& progress) {
     if (work.error) return Scored::failed(*work.error);
@@ -172,23 +191,13 @@ Scored scoreReturned(const ReturnedWork& work, const tasks::Task& task, const ru
     };
     try {
         if (work.isResultOnly) return readLoneResult(work, task, rubric);
-        requireSameExercise(work.path, task);
         const Kept kept(work, task, rubric, settings);
         if (std::optional<Scored> before = kept.read(rubric, settings.pictures)) return std::move(*before);
-        const assessment::Work done =
-            assessment::readWork(work.path, task, settings.prove, core::part(heard, 0.0, 0.8));
-        core::report(heard, 0.8);
-        assessment::Result result = assessment::scoreWork(done, task, rubric);
-        core::report(heard, 0.95);
-        view::Image picture;
-        if (settings.pictures) {
-            try {
-                picture = pictureOf(done, task.toothCase.buccalSign, kPictureWidth, kPictureHeight);
-            } catch (const core::Error&) {
-                picture = {};  // no OpenGL: the score stands without a picture
-            }
-        }
-        Scored scored = Scored::of(std::move(result), std::move(picture));
+        Judged judged = settings.judge
+                            ? settings.judge(work, heard)
+                            : judgeReturned(work.path, task, rubric, settings.prove, settings.pictures, {}, heard);
+        requireOf(judged.result, task, rubric, work.path);
+        Scored scored = Scored::of(std::move(judged.result), std::move(judged.picture));
         kept.write(scored);
         return scored;
     } catch (const std::exception& error) {

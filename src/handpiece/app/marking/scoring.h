@@ -40,10 +40,25 @@ class Scored {
     view::Image picture_;
 };
 
+/// What the machine makes of one work that can be read.
+struct Judged {
+    assessment::Result result;
+    view::Image picture{};
+};
+/// The size of its pictures.
+inline constexpr int kPictureWidth = 192, kPictureHeight = 144;
+/// Reads it, scores it and draws it. `unpacked` as of assessment::readWork(). Throws core::Error.
+[[nodiscard]] Judged judgeReturned(const std::filesystem::path& work, const tasks::Task& task,
+                                   const rubric::Rubric& rubric, bool prove, bool pictures,
+                                   const std::filesystem::path& unpacked = {}, const core::Progress& progress = {});
+
 struct ScoreSettings {
     bool prove = true;  ///< cut sessions again
     bool pictures = true;
     std::filesystem::path kept;  ///< where results are kept by content, exercise, rubric and engine; empty: nowhere
+    /// Who judges what is not kept: in another process, say. Its answer is held to exercise and rubric. Empty:
+    /// judgeReturned(), here.
+    std::function<Judged(const ReturnedWork& work, const core::Progress& progress)> judge{};
 };
 
 /// Of one work. What is wrong with it is the answer's problem(); throws core::Error only when cancelled.

@@ -2,9 +2,6 @@
 #include "handpiece/app/report/page_png.h"
 
 #include <algorithm>
-#include <filesystem>
-
-#include "handpiece/base/core/file.h"
 
 namespace handpiece::report {
 
@@ -12,10 +9,7 @@ std::vector<std::byte> pagePng(view::Image image) {
     // The upper bits again below: white stays white, black black.
     std::transform(image.rgba.begin(), image.rgba.end(), image.rgba.begin(),
                    [](std::uint8_t value) { return static_cast<std::uint8_t>((value & 0xfc) | value >> 6); });
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "picture.png";
-    view::writePng(image, file);
-    return core::readFile(file);
+    return view::pngOf(image);
 }
 
 }  // namespace handpiece::report

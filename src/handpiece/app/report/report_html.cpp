@@ -284,10 +284,7 @@ void HtmlReport::picture(std::span<const std::byte> png, std::string_view captio
 }
 
 void HtmlReport::picture(const view::Image& image, std::string_view caption) {
-    const core::PrivateFolder folder;
-    const std::filesystem::path file = folder.path() / "picture.png";
-    view::writePng(image, file);
-    picture(file, caption);
+    picture(std::span<const std::byte>(view::pngOf(image)), caption);
 }
 
 std::size_t HtmlReport::roomForReview() const {

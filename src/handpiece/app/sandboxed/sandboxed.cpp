@@ -10,12 +10,16 @@
 
 #include "handpiece/app/assessment/assessment_json.h"
 #include "handpiece/app/proving/likeness.h"
+#include "handpiece/app/sandboxed/sandboxed_work.h"
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/prepared/prepared_files.h"
 #include "handpiece/base/sandbox/sandbox.h"
+#include "handpiece/model/case/attempt.h"
+#include "handpiece/model/case/package_type.h"
 
 namespace handpiece::sandboxed {
 namespace {
@@ -77,8 +81,6 @@ class Said {
         if (!one.is_number_unsigned()) throw noAnswer();
         return one.get<std::size_t>();
     }
-
-  private:
     static std::string textOf(const Json& one, std::size_t most) {
         if (!one.is_string() || one.get_ref<const std::string&>().size() > most) throw noAnswer();
         std::string text = one;
@@ -87,11 +89,12 @@ class Said {
         return text;
     }
 
+  private:
     Json json_;
 };
 
 sandbox::Answer asked(const char* work, Json request, const Files& files, const sandbox::Bounds& bounds,
-                      const core::Progress& progress = {}) {
+                      const core::Progress& progress = {}, std::span<const fs::path> besides = {}) {
     std::vector<fs::path> readable = files.sessions;
     Json sessions = Json::array();
     for (fs::path& one : readable) {
@@ -100,6 +103,8 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
     }
     const fs::path exercise = files.exercise.empty() ? fs::path() : core::wholePath(files.exercise);
     if (!exercise.empty()) readable.push_back(exercise);
+    for (const fs::path& one : besides)
+        readable.push_back(core::wholePath(one));
     request["work"] = work, request["language"] = config::words().language();
     request["sessions"] = sessions, request["exercise"] = exercise.string();
     return sandbox::ask(request.dump(-1, ' ', false, Json::error_handler_t::replace), readable, bounds, progress);
@@ -125,6 +130,28 @@ school::Score refusedFor(const core::Error& e) {
     school::Score s;
     s.state = "refused", s.passed = "teacher", s.reason = e.problem();
     return s;
+}
+
+/// Sessions that came along with something else.
+struct Carried {
+    std::string name{};
+    std::span<const std::byte> bytes{};
+};
+constexpr std::size_t kMostCarried = 1000;
+/// As `answer` says, which must outlive them.
+std::vector<Carried> carriedIn(const Said& said, const sandbox::Answer& answer) {
+    const Json& list = said.at("sessions");
+    if (!list.is_array() || list.size() > kMostCarried) throw noAnswer();
+    std::span<const std::byte> left(answer.bytes);
+    std::vector<Carried> all;
+    for (const Json& one : list) {
+        if (!one.is_object() || !one.contains("name") || !one.contains("bytes")) throw noAnswer();
+        const std::size_t size = Said::countOf(one.at("bytes"));
+        if (size > left.size()) throw noAnswer();
+        all.push_back({Said::textOf(one.at("name"), 250), left.first(size)});
+        left = left.subspan(size);
+    }
+    return all;
 }
 
 constexpr std::size_t kMostResult = 1u << 20, kMostWords = 16'384;
@@ -230,13 +257,111 @@ report::Review review(const Files& files, const std::string& title, const std::s
     return review;
 }
 
-ReadThrough readThrough(const fs::path& session) {
+ReadThrough readThrough(const fs::path& session, const core::Progress& progress) {
     const Files files{{session}, {}};
     sandbox::Bounds bounds = boundsFor(files);
     bounds.answerBytes = 4096;
-    const sandbox::Answer answer = asked("session", Json::object(), files, bounds);
+    const sandbox::Answer answer = asked("session", Json::object(), files, bounds, progress);
     const Said said(answer.text);
     return {said.count("ticks"), said.count("events"), said.count("key_frames"), answer.peakBytes};
+}
+
+CheckedPackage checkPackage(const fs::path& file, const core::Progress& progress) {
+    constexpr double kOfItself = 0.3;  // of the work, where there are sessions in it
+    sandbox::Bounds bounds = boundsFor({{file}, {}});
+    bounds.answerBytes = kMostCarriedBytes;
+    const sandbox::Answer answer =
+        asked("package", Json::object(), {{}, file}, bounds, core::part(progress, 0.0, kOfItself));
+    const Said said(answer.text);
+    CheckedPackage checked;
+    checked.type = said.text("type", 16);
+    if (std::find(cases::kPackageTypes.begin(), cases::kPackageTypes.end(), checked.type) == cases::kPackageTypes.end())
+        throw noAnswer();
+    const std::vector<Carried> sessions = carriedIn(said, answer);
+    if (sessions.empty()) return checked;
+    const core::PrivateFolder folder;
+    for (std::size_t i = 0; i < sessions.size(); ++i) {
+        const auto share = [&](std::size_t n) {
+            return kOfItself + (1.0 - kOfItself) * static_cast<double>(n) / static_cast<double>(sessions.size());
+        };
+        const fs::path place = folder.path() / fmt::format("{}.h5", i + 1);
+        core::writeFile(place, sessions[i].bytes, {true, false});
+        checked.sessions.push_back(prepared::sha256Of(sessions[i].bytes));
+        try {
+            (void)readThrough(place, core::part(progress, share(i), share(i + 1)));
+        } catch (const core::Error& e) {
+            if (!sandbox::isFault(e)) throw;
+            throw core::Error(e.problem(), fmt::format("{} in {}", sessions[i].name, file.string()), e.remedy())
+                .as(e.id(), e.arguments());
+        }
+    }
+    return checked;
+}
+
+namespace {
+
+/// A folder's files are all that lies in it.
+sandbox::Bounds boundsOf(const fs::path& work) {
+    Files files;
+    std::error_code ec;
+    if (!core::isFolder(work)) files.sessions.push_back(work);
+    for (fs::recursive_directory_iterator at(work, ec), end; !ec && at != end; at.increment(ec))
+        if (at->is_regular_file(ec)) files.sessions.push_back(at->path());
+    return boundsFor(files);
+}
+
+/// The case that an attempt names; empty where there is none in its own folder.
+fs::path beside(const fs::path& work, const std::string& named) {
+    std::error_code none, noFolder;
+    const fs::path in = fs::canonical(work.parent_path(), noFolder), is = fs::canonical(named, none);
+    if (noFolder || none || std::mismatch(in.begin(), in.end(), is.begin(), is.end()).first != in.end()) return {};
+    return cases::isPackageName(is) || core::isThere(is / "case.toml") ? is : fs::path();
+}
+
+bool isPlainName(const std::string& name) {
+    return name.size() > 3 && name.ends_with(".h5") && name.front() != '.' && name.find('/') == std::string::npos;
+}
+
+}  // namespace
+
+marking::Judged returned(const Returned& of, const core::Progress& progress) {
+    const fs::path work = core::wholePath(of.work);
+    constexpr double kUnpacking = 0.05;
+    sandbox::Bounds bounds = boundsOf(work);
+    std::vector<fs::path> besides{work};
+    std::optional<core::PrivateFolder> unpacked;
+    if (cases::isPackageName(work) || core::isThere(work / cases::kAttemptFile)) {
+        bounds.answerBytes = kMostCarriedBytes;
+        const sandbox::Answer answer =
+            asked("recordings", {{"of", work.string()}}, {}, bounds, core::part(progress, 0.0, kUnpacking), besides);
+        const Said said(answer.text);
+        unpacked.emplace();
+        for (const Carried& one : carriedIn(said, answer)) {
+            if (!isPlainName(one.name)) throw noAnswer();
+            core::writeFile(unpacked->path() / one.name, one.bytes, {true, false});
+        }
+        besides.push_back(unpacked->path());
+        if (const fs::path named = beside(work, said.text("case", 4096)); !named.empty()) besides.push_back(named);
+    }
+    bounds.answerBytes = 8u << 20;
+    const sandbox::Answer answer = asked("returned",
+                                         {{"of", work.string()},
+                                          {"unpacked", unpacked ? unpacked->path().string() : std::string()},
+                                          {"rubric", of.rubric},
+                                          {"prove", of.prove},
+                                          {"draws", of.draws}},
+                                         {{}, of.exercise}, bounds, core::part(progress, kUnpacking, 1.0), besides);
+    const Said said(answer.text);
+    marking::Judged judged{assessment::parseResult(said.text("result", kMostResult), "what was found")};
+    judged.result.proof = said.text("proof", kMostWords);
+    if (answer.bytes.empty()) return judged;
+    view::Image& picture = judged.picture;
+    picture.width = marking::kPictureWidth, picture.height = marking::kPictureHeight;
+    const std::size_t size = 4 * static_cast<std::size_t>(picture.width) * static_cast<std::size_t>(picture.height);
+    if (answer.bytes.size() != size) throw noAnswer();
+    const auto* pixels = reinterpret_cast<const std::uint8_t*>(answer.bytes.data());
+    picture.rgba.assign(pixels, pixels + size);
+    return judged;
 }
 
 view::Image picture(const Files& files, int widthPx, int heightPx) {

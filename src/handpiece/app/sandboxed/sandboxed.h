@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// What a school's server reads of strangers' files, each time in a process that holds nothing (base/sandbox): sessions
-/// and exercises. docs/sandbox.md.
+/// What a school's server and the window read of strangers' files, each time in a process that holds nothing
+/// (base/sandbox): sessions, exercises, attempts. docs/sandbox.md.
 ///
 /// What a file does to its reader stays there; what comes back is looked at here before it is believed to be of its
 /// kind. Whether it is true nobody but its own reader knows: a file that takes its reader over can have it say of this
@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/app/marking/scoring.h"
 #include "handpiece/app/report/review.h"
 #include "handpiece/base/core/progress.h"
 #include "handpiece/model/case/exercise.h"
@@ -58,7 +59,26 @@ struct ReadThrough {
     std::uint64_t ticks = 0, events = 0, keyFrames = 0;
     std::uint64_t peakBytes = 0;  ///< of memory that its reader had
 };
-[[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session);
+[[nodiscard]] ReadThrough readThrough(const std::filesystem::path& session, const core::Progress& progress = {});
+
+/// Reads all of a .handpiece file, be it a case, an exercise or an attempt, and all of the sessions in it, and keeps
+/// nothing of them. A case that an attempt only names is another file.
+struct CheckedPackage {
+    std::string type{};                   ///< of cases::kPackageTypes
+    std::vector<std::string> sessions{};  ///< SHA-256 of each
+};
+[[nodiscard]] CheckedPackage checkPackage(const std::filesystem::path& file, const core::Progress& progress = {});
+
+/// What a teacher's desk asks of work that was given back.
+struct Returned {
+    std::filesystem::path work;      ///< a session, a folder with a chain of them, an attempt
+    std::filesystem::path exercise;  ///< its file
+    std::string rubric{};            ///< its text
+    bool prove = true, draws = true;
+};
+/// As marking::judgeReturned(). Whether the result is of this exercise and rubric its caller looks at. A case that an
+/// attempt only names is read where it lies in the attempt's own folder.
+[[nodiscard]] marking::Judged returned(const Returned& of, const core::Progress& progress = {});
 
 /// The tooth as this work leaves it, from occlusal.
 [[nodiscard]] view::Image picture(const Files& files, int widthPx, int heightPx);

@@ -21,7 +21,9 @@
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case_bytes.h"
+#include "handpiece/model/case/package_type.h"
 #include "handpiece/record/session/session_reader.h"
 
 namespace handpiece::sandboxed {
@@ -139,21 +141,109 @@ Answer review(const Json& asked, const core::Progress& progress) {
     return answer;
 }
 
-Answer readThrough(const Json& asked, const core::Progress&) {
+Answer readThrough(const Json& asked, const core::Progress& progress) {
     std::uint64_t ticks = 0, events = 0, keyFrames = 0;
     for (const std::filesystem::path& one : sessionsOf(asked)) {
         constexpr std::size_t kStretch = 10'000;
+        const auto tell = [&](double begin, std::uint64_t done, std::uint64_t all) {
+            core::report(progress, begin + 0.5 * static_cast<double>(done) / static_cast<double>(all));
+        };
         const session::SessionReader reader(one);
         const std::string where = one.filename().string();
         (void)simulation::settingsFromJson(reader.info().settings, where);
         (void)cases::decodeCase(reader.info().tooth, where);
-        for (std::uint64_t at = 0; at < reader.size(); at += kStretch)
+        if (!reader.info().scenery.empty()) (void)cases::decodeCase(reader.info().scenery, where);
+        for (std::uint64_t at = 0; at < reader.size(); at += kStretch) {
+            tell(0.0, at, reader.size());
             (void)reader.records(at, kStretch);
-        for (std::size_t i = 0; i < reader.keyFrameTicks().size(); ++i)
+        }
+        for (std::size_t i = 0; i < reader.keyFrameTicks().size(); ++i) {
+            tell(0.5, i, reader.keyFrameTicks().size());
             (void)reader.keyFrame(i);
+        }
         ticks += reader.size(), events += reader.events().size(), keyFrames += reader.keyFrameTicks().size();
     }
     return {dumped({{"ticks", ticks}, {"events", events}, {"key_frames", keyFrames}})};
+}
+
+/// Sessions that come along with something else, for who starts this: they are read as files, and none is written here.
+class Carrying {
+  public:
+    void add(const std::string& name, std::span<const std::byte> bytes) {
+        if (bytes.size() > kMostCarriedBytes - bytes_.size())
+            throw core::Error(fmt::format("its recordings have more than {} MB", kMostCarriedBytes >> 20), name,
+                              "leave some out")
+                .as("too-large");
+        list_.push_back({{"name", name}, {"bytes", bytes.size()}});
+        bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    }
+    void addOf(const std::filesystem::path& file, const cases::Attempt& attempt) {
+        for (const cases::Attempt::Recording& one : attempt.recordings)
+            if (one.packed) add(one.name, cases::readRecording(file, one.name));
+    }
+    [[nodiscard]] Answer answer(Json with) {
+        with["sessions"] = std::move(list_);
+        return {dumped(with), std::move(bytes_)};
+    }
+
+  private:
+    Json list_ = Json::array();
+    std::vector<std::byte> bytes_;
+};
+
+/// One that was packed without its case names it: another file, which is read by itself.
+bool holdsCase(const std::filesystem::path& file) {
+    try {
+        (void)cases::readCase(file);
+        return true;
+    } catch (const core::Error& e) {
+        if (e.id() != "not-a-case") throw;
+        return false;
+    }
+}
+
+Answer package(const Json& asked, const core::Progress&) {
+    const std::filesystem::path file = asked.at("exercise").get<std::string>();
+    Carrying carrying;
+    const cases::PackageType type = cases::packageType(file).value_or(cases::PackageType::toothCase);
+    if (cases::isAttempt(file)) {
+        const cases::Attempt attempt = cases::readAttempt(file);
+        const bool isWhole = holdsCase(file);
+        if (isWhole) (void)cases::openAttempt(file);
+        if (isWhole && !attempt.exercise.empty()) (void)tasks::readTask(file);
+        carrying.addOf(file, attempt);
+    } else if (tasks::isTask(file)) {
+        const tasks::Task task = tasks::readTask(file);
+        if (task.teacherWork) carrying.add(tasks::kTeacherWorkFile, *task.teacherWork);
+    } else {
+        (void)cases::readCase(file);
+    }
+    return carrying.answer({{"type", cases::kPackageTypes[static_cast<std::size_t>(type)]}});
+}
+
+Answer recordings(const Json& asked, const core::Progress&) {
+    const std::filesystem::path work = asked.at("of").get<std::string>();
+    Carrying carrying;
+    std::string named;
+    if (cases::isAttempt(work)) {
+        const cases::Attempt attempt = cases::readAttempt(work);
+        carrying.addOf(work, attempt);
+        if (!holdsCase(work)) named = attempt.caseFile.string();
+    }
+    return carrying.answer({{"case", named}});
+}
+
+Answer returned(const Json& asked, const core::Progress& progress) {
+    const tasks::Task task = schoolsOwn([&] { return tasks::readTask(asked.at("exercise").get<std::string>()); });
+    const rubric::Rubric rubric =
+        schoolsOwn([&] { return rubric::parseRubric(asked.at("rubric").get<std::string>(), "the rubric"); });
+    const marking::Judged judged =
+        marking::judgeReturned(asked.at("of").get<std::string>(), task, rubric, asked.at("prove"), asked.at("draws"),
+                               asked.at("unpacked").get<std::string>(), progress);
+    const auto* pixels = reinterpret_cast<const std::byte*>(judged.picture.rgba.data());
+    return {dumped({{"result", assessment::resultJson(judged.result.assessment, judged.result.identity)},
+                    {"proof", judged.result.proof}}),
+            {pixels, pixels + judged.picture.rgba.size()}};
 }
 
 Answer picture(const Json& asked, const core::Progress& progress) {
@@ -208,13 +298,11 @@ Answer studentReport(const Json& asked, const core::Progress&) {
 
 Answer answer(const std::string& request, const core::Progress& progress) {
     static const std::map<std::string, Answer (*)(const Json&, const core::Progress&)> works{
-        {"prove", prove},
-        {"review", review},
-        {"picture", picture},
-        {"session", readThrough},
-        {"exercise", exercise},
-        {"pack", pack},
-        {"student report", studentReport}};
+        {"prove", prove},       {"review", review},
+        {"picture", picture},   {"session", readThrough},
+        {"package", package},   {"recordings", recordings},
+        {"returned", returned}, {"exercise", exercise},
+        {"pack", pack},         {"student report", studentReport}};
     const Json asked = config::requireOutsideJson<Json>(request, {.values = 10'000'000});
     const config::LanguageHere here(asked.at("language").get<std::string>());
     return works.at(asked.at("work"))(asked, progress);

@@ -7,6 +7,9 @@
 
 namespace handpiece::sandboxed {
 
+/// Of the sessions that come along with something else, all together.
+inline constexpr std::size_t kMostCarriedBytes = 320u << 20;
+
 /// sandbox::Work.
 [[nodiscard]] sandbox::Answer answer(const std::string& request, const core::Progress& progress);
 

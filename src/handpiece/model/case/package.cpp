@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/taken_from.h"
 
 namespace handpiece::cases {
 namespace {
@@ -151,10 +152,14 @@ bool isPackageName(const fs::path& path) {
 }
 
 PackageFiles readPackage(const fs::path& file, const PackageLimits& limits) {
-    return readPackage(core::readFile(file, kMaxPackedBytes), file.string(), limits);
+    return readPackage(core::readFile(core::takenFrom(file), kMaxPackedBytes), file.string(), limits);
 }
 
 PackageFiles readPackage(const fs::path& file, const std::function<bool(const std::string& name)>& wanted) {
+    return unpack(core::readFile(core::takenFrom(file), kMaxPackedBytes), file.string(), {}, wanted);
+}
+
+PackageFiles lookInto(const fs::path& file, const std::function<bool(const std::string& name)>& wanted) {
     return unpack(core::readFile(file, kMaxPackedBytes), file.string(), {}, wanted);
 }
 

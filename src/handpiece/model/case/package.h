@@ -36,6 +36,9 @@ struct PackageLimits {
 /// The same; a file whose name is not wanted is in the result without its content.
 [[nodiscard]] PackageFiles readPackage(const std::filesystem::path& file,
                                        const std::function<bool(const std::string& name)>& wanted);
+/// The same of the file as it lies, whatever core::takenFrom() says: for what only tells what a file is.
+[[nodiscard]] PackageFiles lookInto(const std::filesystem::path& file,
+                                    const std::function<bool(const std::string& name)>& wanted);
 /// The same from memory; `where` names it in messages.
 [[nodiscard]] PackageFiles readPackage(std::span<const std::byte> zip, const std::string& where,
                                        const PackageLimits& limits = {});

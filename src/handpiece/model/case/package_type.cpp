@@ -71,7 +71,7 @@ std::optional<PackageType> packageType(const PackageFiles& files, const std::str
 }
 
 std::optional<PackageType> packageType(const std::filesystem::path& file) {
-    return packageType(readPackage(file, [](const std::string& name) { return name == kPackageFile; }), file.string());
+    return packageType(lookInto(file, [](const std::string& name) { return name == kPackageFile; }), file.string());
 }
 
 void requireOpenable(const PackageFiles& files, const std::string& where) {

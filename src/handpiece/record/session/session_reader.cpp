@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/taken_from.h"
 #include "handpiece/record/session/hdf5_object.h"
 
 namespace handpiece::session {
@@ -312,9 +313,9 @@ SessionReader::SessionReader(const std::filesystem::path& path) : state_(std::ma
     silenceHdf5();
     State& s = *state_;
     (void)core::openFile(path);  // HDF5 would wait for what a pipe says, and tells less of what it cannot open
-    const std::string name = path.string();
+    const std::string name = core::takenFrom(path).string();
     if (H5Fis_hdf5(name.c_str()) <= 0)
-        throw core::Error("this is no session: it is not an HDF5 file", name).as("not-a-session");
+        throw core::Error("this is no session: it is not an HDF5 file", path.string()).as("not-a-session");
     const Hdf5Object access(H5Pcreate(H5P_FILE_ACCESS));
     H5Pset_fclose_degree(access.id(), H5F_CLOSE_STRONG);
     // As a recording that may be under way: what is read later may lie behind where the file ended when it was opened.

@@ -22,7 +22,7 @@ namespace handpiece::session {
 ///
 /// What the file says about itself (types, sizes, links, filters) is checked before anything is read by it, and what
 /// cannot be so throws. The HDF5 library underneath parses the file's own structure first: a file made to attack that
-/// library is beyond what can be checked here.
+/// library is beyond what can be checked here, and is for who has such files read apart (core::takenFrom()).
 class SessionReader {
   public:
     /// Throws core::Error: no such file, not a session, of a newer version, damaged (naming what is wrong).

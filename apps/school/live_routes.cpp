@@ -207,6 +207,7 @@ std::vector<Entry> liveRoutes(Service* of) {
                  shown.live = school_wire::liveFrom(request.body);
                  requirePicture(shown.live.picture);
                  shown.station = station.id, shown.stationName = station.name;
+                 requireActsFor(station, shown.live.person);
                  admit(*of->books.take(), shown, now);
              } catch (const core::Error&) {
                  of->live.end(station.id);  // what was there before is no longer so

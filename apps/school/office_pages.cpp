@@ -536,11 +536,44 @@ Page ownAccountPage(const Visit& v, const std::string& shown, const std::string&
               again = required(field("again", word("first-again"), {}, "password"));
     old.complete = "current-password", fresh.complete = again.complete = "new-password";
     page.form({"/account", {report::tokenField(lookerOf(v)), old, fresh, again}, {{word("own-do")}}});
+    page.heading(word("own-stations"));
+    page.paragraph(words()("school-office.own-stations-about", school::Books::kTerm / kDay), Tone::note);
+    const FormField token = report::tokenField(lookerOf(v));
+    for (const school::Station& one : v.books.stationsOf(v.person.code)) {
+        if (one.revoked > 0 || one.ends <= v.now) continue;
+        page.paragraph(words()("school-office.own-station-until", one.name, report::momentOf(one.ends)));
+        page.form({"/account/stations/" + one.id + "/revoke",
+                   {token},
+                   {{words()("school-office.revoke-do", one.name), {}, {}, true}}});
+    }
+    page.form(
+        {"/account/stations", {token, required(field("name", word("station-name")))}, {{word("own-station-do")}}});
     page.heading(word("own-export"));
     page.link("/account/export", word("export-do"));
     page.heading(word("own-audit"));
     (void)addAudit(page, BooksAccounts(v.books).auditBefore(0, kAuditLines, v.person.code));
     return {200, page.text()};
+}
+
+Page addOwnStation(const Visit& v, const Sent& sent) {
+    return tried(
+        [&] {
+            const std::string code = school::newStationCode();
+            v.books.offerCode(code, sent("name"), v.now + kDay, actOf(v), "practice", v.person.code);
+            return ownAccountPage(v, words()("school-office.own-station-shown", code, code));
+        },
+        [&](const std::string& wrong) { return ownAccountPage(v, {}, wrong); });
+}
+
+Page revokeOwnStation(const Visit& v, const std::string& id) {
+    const auto station = v.books.station(id);
+    if (!station || station->person != v.person.code) return notYours();
+    return tried(
+        [&] {
+            v.books.revoke(id, actOf(v));
+            return back("/account");
+        },
+        [&](const std::string& wrong) { return ownAccountPage(v, {}, wrong); });
 }
 
 Page setOwnPassword(const Visit& v, const Sent& sent, const std::function<void()>& isTheirs) {

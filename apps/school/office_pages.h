@@ -38,6 +38,9 @@ using Sent = std::function<std::string(const char*)>;
 /// Of oneself unless one may see all.
 [[nodiscard]] Page auditPage(const Visit& visit, const std::string& before, const std::string& about);
 [[nodiscard]] Page ownAccountPage(const Visit& visit, const std::string& shown = {}, const std::string& wrong = {});
+/// A code for a computer of one's own; and such a computer's end.
+[[nodiscard]] Page addOwnStation(const Visit& visit, const Sent& sent);
+[[nodiscard]] Page revokeOwnStation(const Visit& visit, const std::string& station);
 /// `isTheirs` is called when the old password was right.
 [[nodiscard]] Page setOwnPassword(const Visit& visit, const Sent& sent, const std::function<void()>& isTheirs);
 

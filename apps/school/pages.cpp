@@ -70,6 +70,11 @@ Page personOf(const Visit& v, const std::string& code) {
     return {200, report::personPage(lookerOf(v), code, namesFor(v, last, code), work)};
 }
 
+static bool isAnybodys(const Visit& v, const school::PushedAttempt& attempt) {
+    const auto station = v.books.station(attempt.station);
+    return !attempt.assignment.empty() && station && station->person.empty();
+}
+
 Page attemptOf(const Visit& v, const std::string& id) {
     const auto attempt = v.books.attempt(id);
     const school::Visible seen = attempt ? visibleOf(v, *attempt) : school::Visible{};
@@ -89,7 +94,8 @@ Page attemptOf(const Visit& v, const std::string& id) {
     }
     return {200, report::attemptPage(lookerOf(v), *attempt, namesFor(v, seen, attempt->person),
                                      seen.worth ? v.books.scoresOf(id) : std::vector<school::Score>{}, marks, comments,
-                                     seen.markers ? v.books.alike(id) : std::vector<school::Books::Alike>{})};
+                                     seen.markers ? v.books.alike(id) : std::vector<school::Books::Alike>{},
+                                     seen.markers && isAnybodys(v, *attempt))};
 }
 
 Page resultOf(const Visit& v, const std::string& id, Readings& readings) {

@@ -44,4 +44,7 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
 
+/// Whose a station is was shown by that person; it acts for nobody else. Throws core::Error "station-anothers".
+void requireActsFor(const school::Station& station, const std::string& person);
+
 }  // namespace handpiece::school_server

@@ -47,7 +47,7 @@ void offerCode(const BooksOptions& o) {
     const std::string code = school::newStationCode();
     const Act act = now();
     books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act,
-                    o.isForExams ? "exam" : "practice");
+                    o.isForExams ? "exam" : "practice", o.person);
     fmt::print("{}\n", code);
 }
 
@@ -129,6 +129,7 @@ void tellResults(const BooksOptions& o) {
 
 struct StationOptions {
     std::string home, server, code, person;
+    bool again = false;
 };
 
 /// Where the window keeps what a person has done.
@@ -143,10 +144,16 @@ fs::path homeOf(const StationOptions& o) {
 
 void enrol(const StationOptions& o) {
     const fs::path file = homeOf(o) / "school.json";
-    if (core::isThere(file))
+    // Again at the same school: what it has heard of it has.
+    std::optional<school_station::Enrolment> before;
+    if (core::isThere(file)) before = school_station::readEnrolment(file);
+    if (before && (!o.again || before->server != o.server))
         throw core::Error("this station belongs to a school already", file.string(),
-                          "move the file away to enrol it with another one");
-    const school_station::Enrolment made = school_station::enrol(o.server, o.code, o.person);
+                          "say --again to enrol it with the same server anew; else move the file away");
+    school_station::Enrolment made = school_station::enrol(o.server, o.code, o.person);
+    if (made.person.empty())
+        throw core::Error("whose work is it?", "--person", "give the school's code of who works here");
+    if (before && before->person == made.person) made.sent = before->sent, made.books = before->books;
     fs::create_directories(homeOf(o));
     school_station::writeEnrolment(made, file);
     fmt::print("enrolled as station {}\n", made.station);
@@ -199,6 +206,7 @@ void addBooksCommands(cli::Command& app) {
     code.option("--hours", o.hours, "that it holds")
         .check(cli::range(std::size_t{1}, std::size_t{10000}))
         .showDefault();
+    code.option("--person", o.person, "whose own it will be: it sends their work alone");
     code.flag("--exam", o.isForExams,
               "of a station that holds exams; when it has enrolled: handpiece school exam release");
     code.callback([options] { offerCode(*options); });
@@ -261,7 +269,9 @@ void addStationCommands(cli::Command& app) {
     home(enrolCommand);
     enrolCommand.option("SERVER", o.server, "its address, as https://school.example:8620").required();
     enrolCommand.option("CODE", o.code, "a one-time code: handpiece-school code").required();
-    enrolCommand.option("--person", o.person, "whose results these are: the school's code").required();
+    enrolCommand.option("--person", o.person,
+                        "whose results these are: the school's code; not needed with a code of one's own account");
+    enrolCommand.flag("--again", o.again, "with another code at the same server; what was sent is not sent again");
     enrolCommand.callback([options] { enrol(*options); });
 
     cli::Command pushCommand = app.subcommand("push", "Sends the school what it has not heard of yet");

@@ -73,6 +73,12 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.signOnHeader, variable("HANDPIECE_SCHOOL_SIGN_ON_HEADER"));
     if (s.signOnProxies.empty()) s.signOnProxies = partsOf(variable("HANDPIECE_SCHOOL_SIGN_ON_PROXIES"));
     if (s.proxies.empty()) s.proxies = partsOf(variable("HANDPIECE_SCHOOL_PROXIES"));
+    if (const std::string text = variable("HANDPIECE_SCHOOL_OWN_STATIONS_ONLY"); !s.ownStationsOnly && !text.empty()) {
+        if (text != "yes" && text != "no")
+            throw core::Error(fmt::format("\"{}\" is neither yes nor no", text), "HANDPIECE_SCHOOL_OWN_STATIONS_ONLY",
+                              "write yes or no");
+        s.ownStationsOnly = text == "yes";
+    }
     for (const Count& of : kCounts)
         if (const std::string text = variable(of.variable); !(s.*of.value) && !text.empty())
             s.*of.value = countIn(text, of);
@@ -81,7 +87,8 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     if (!s.file.empty()) {
         const config::Table file = config::Table::read(s.file);
         file.allowOnly({"data", "database", "listen", "certificate", "key", "workers", "connections", "address",
-                        "proxies", "sign_on_proxies", "sign_on_secret", "sign_on_header"});
+                        "proxies", "sign_on_proxies", "sign_on_secret", "sign_on_header", "own_stations_only"});
+        if (!s.ownStationsOnly) s.ownStationsOnly = file.flag("own_stations_only");
         fill(s.data, file.text("data").value_or(""));
         fill(s.database, file.text("database").value_or(""));
         fill(s.listen, file.text("listen").value_or(""));
@@ -103,6 +110,7 @@ SchoolSettings settled(SchoolSettings s, const Environment& environment, const s
     fill(s.data, "school");
     fill(s.listen, "127.0.0.1:8620");
     fill(s.signOnHeader, "X-Handpiece-User");
+    if (!s.ownStationsOnly) s.ownStationsOnly = false;
     for (const Count& of : kCounts)
         if (!(s.*of.value)) s.*of.value = of.asBuilt;
     return s;

@@ -21,6 +21,7 @@ struct SchoolSettings {
     std::vector<std::string> signOnProxies{};    ///< addresses of proxies that vouch for who logs in
     std::string signOnSecret{}, signOnHeader{};  ///< file with what they know; in which they name who logs in
     std::optional<std::size_t> workers{}, connections{};
+    std::optional<bool> ownStationsOnly{};  ///< class work of stations that are a person's own alone
 };
 inline constexpr std::size_t kMostWorkers = 64, kMostConnections = 1000;
 
@@ -29,9 +30,10 @@ using Environment = std::function<const char*(const char*)>;
 [[nodiscard]] Environment ownEnvironment();
 
 /// All of it: what `given` leaves out from HANDPIECE_SCHOOL_DATA, _DATABASE, _LISTEN, _CERTIFICATE, _KEY, _WORKERS,
-/// _CONNECTIONS, _ADDRESS, _SIGN_ON_PROXIES (with commas), _SIGN_ON_SECRET, _SIGN_ON_HEADER, then from the file that
-/// `given`, HANDPIECE_SCHOOL_SETTINGS or the system names (`systemFile`, where it is there). Throws core::Error: a file
-/// that cannot be read, a key that is none, a value that is none (which, where).
+/// _CONNECTIONS, _OWN_STATIONS_ONLY (yes or no), _ADDRESS, _SIGN_ON_PROXIES (with commas), _SIGN_ON_SECRET,
+/// _SIGN_ON_HEADER, then from the file that `given`, HANDPIECE_SCHOOL_SETTINGS or the system names (`systemFile`, where
+/// it is there). Throws core::Error: a file that cannot be read, a key that is none, a value that is none (which,
+/// where).
 [[nodiscard]] SchoolSettings settled(SchoolSettings given, const Environment& environment,
                                      const std::string& systemFile = "/etc/handpiece-school/settings.toml");
 

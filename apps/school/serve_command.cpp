@@ -25,6 +25,7 @@ namespace {
 struct ServeOptions {
     SchoolSettings given;
     std::size_t workers = 0, connections = 0;
+    bool ownStationsOnly = false;
     bool worker = false;
 };
 
@@ -68,6 +69,7 @@ void serve(const ServeOptions& asked) {
         throw core::Error("single sign-on needs the proxies' addresses and a secret that they know", "--sign-on-proxy",
                           "give both --sign-on-proxy and --sign-on-secret, or neither");
     settings.connections = *o.connections;
+    settings.ownStationsOnly = *o.ownStationsOnly;
     const std::size_t colon = o.listen.rfind(':');
     settings.host = o.listen.substr(0, colon == std::string::npos ? o.listen.size() : colon);
     if (settings.host.size() > 2 && settings.host.front() == '[')
@@ -110,6 +112,7 @@ void addServeCommand(cli::Command& app) {
         .check(cli::range(std::size_t{0}, kMostWorkers));
     command.option("--connections", o.connections, "to the database at once, at most; who comes beyond waits (60)")
         .check(cli::range(std::size_t{1}, kMostConnections));
+    command.flag("--own-stations-only", o.ownStationsOnly, "class work comes from a person's own stations alone");
     command.option("--address", o.given.address, "as browsers know it, https://school.example: for log-ins by LTI");
     command.option("--proxy", o.given.proxies, "address of a proxy whose X-Forwarded-For is believed; several times")
         .takeAll();
@@ -123,6 +126,7 @@ void addServeCommand(cli::Command& app) {
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
     command.callback([options, command] {
         if (command.isGiven("--workers")) options->given.workers = options->workers;
+        if (options->ownStationsOnly) options->given.ownStationsOnly = true;
         if (command.isGiven("--connections")) options->given.connections = options->connections;
         serve(*options);
     });

@@ -334,7 +334,7 @@ struct Server::State : Service {
         constexpr std::string_view kBearer = "Bearer ";
         const std::string said = request.get_header_value("Authorization");
         if (!said.starts_with(kBearer) || said.size() >= 200) return {};
-        return books.take()->stationByKey(said.substr(kBearer.size()));
+        return books.take()->stationByKey(said.substr(kBearer.size()), clock());
     }
     school::Station stationOf(const Request& request) {
         requireSpoken(request);

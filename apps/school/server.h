@@ -28,6 +28,7 @@ struct Settings {
     std::string host = "127.0.0.1";
     int port = 8620;                   ///< 0: any that is free
     std::string certificate{}, key{};  ///< files (PEM) for TLS of its own; both or neither
+    bool ownStationsOnly = false;      ///< class work comes from stations that are a person's own alone
     std::size_t threads = 400;         ///< at most; each serves one connection
     std::size_t connections = 60;      ///< to the database at once, at most; PostgreSQL has 100 for all its clients
     std::chrono::milliseconds slow{10'000};  ///< who sends and takes less than 2 kB in so long is cut off

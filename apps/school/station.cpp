@@ -161,7 +161,7 @@ Enrolment enrol(const std::string& server, const std::string& code, const std::s
     Line line(server, {});
     const school_wire::Enrolled made =
         school_wire::enrolledFrom(line.post("/api/v1/enrol", school_wire::toJson(school_wire::Enrol{code})));
-    return {server, made.station, made.key, person, 0};
+    return {server, made.station, made.key, made.person.empty() ? person : made.person, 0};
 }
 
 Pushed push(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file,

@@ -27,8 +27,8 @@ struct Enrolment {
 [[nodiscard]] Enrolment readEnrolment(const std::filesystem::path& file);
 void writeEnrolment(const Enrolment& enrolment, const std::filesystem::path& file);
 
-/// With a one-time code. Throws core::Error: "code-unknown", "server-silent", "server-nonsense", an address that is
-/// none.
+/// With a one-time code; one of a person's account says whose work it will send, else `person` does. Throws
+/// core::Error: "code-unknown", "server-silent", "server-nonsense", an address that is none.
 [[nodiscard]] Enrolment enrol(const std::string& server, const std::string& code, const std::string& person);
 
 struct Pushed {

@@ -24,6 +24,13 @@ bool isStudentIn(const school::Books& books, const std::string& schoolClass, con
 }
 }  // namespace
 
+void requireActsFor(const school::Station& station, const std::string& person) {
+    if (station.person.empty() || station.person == person) return;
+    throw core::Error("this station is another person's", station.name,
+                      "work in your own account of that computer, enrolled by a code of your own account's page")
+        .as("station-anothers", {station.name});
+}
+
 std::vector<Entry> stationRoutes(Service* of) {
     using school_wire::toJson;
     const auto upload = [](const Request& request, const school::Station& station) {
@@ -33,12 +40,14 @@ std::vector<Entry> stationRoutes(Service* of) {
         {"POST", "/api/v1/enrol", Handler([of](const Request& request, Response& response) {
              const school_wire::Enrol enrol = school_wire::enrolFrom(request.body);
              // A key of 256 bits out of the system's randomness.
-             const school_wire::Enrolled made{school::newId(), school::newSecret()};
-             if (!of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station, made.key,
-                                                 of->clock()))
+             school_wire::Enrolled made{school::newId(), school::newSecret(), {}};
+             const auto station = of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station,
+                                                                 made.key, of->clock());
+             if (!station)
                  throw core::Error("this code is not known, was used, or is too old", "",
                                    "have a new one made: handpiece school code")
                      .as("code-unknown");
+             made.person = station->person;
              answer(response, toJson(made), 201);
          })},
         {"GET", "/api/v1/status",
@@ -55,8 +64,9 @@ std::vector<Entry> stationRoutes(Service* of) {
              answer(response, toJson(status));
          })},
         {"GET", "/api/v1/tasks/([0-9A-Za-z._-]{1,64})",
-         StationHandler([of](const Request& request, Response& response, const school::Station&) {
+         StationHandler([of](const Request& request, Response& response, const school::Station& station) {
              const std::string person = request.matches[1];
+             requireActsFor(station, person);
              auto open = of->books.take();
              std::vector<school_wire::Task> tasks;
              for (const school::SchoolClass& one : open->classes()) {
@@ -71,8 +81,14 @@ std::vector<Entry> stationRoutes(Service* of) {
              school::PushedAttempt pushed = school_wire::attemptFrom(request.body);
              pushed.station = station.id;
              pushed.received = of->clock();
+             requireActsFor(station, pushed.person);
              auto open = of->books.take();
              if (const auto assignment = open->assignment(pushed.assignment)) {
+                 if (of->settings.ownStationsOnly && station.person.empty())
+                     throw core::Error("this school takes class work of a person's own station alone", station.name,
+                                       "make a code for this computer on your account's page, and enrol it again; the "
+                                       "work waits")
+                         .as("station-anybodys", {station.name});
                  if (assignment->kind == "exam")
                      throw core::Error("an exam's work is told by the service of its station alone", pushed.assignment,
                                        "hand it over there: handpiece school exam finish")

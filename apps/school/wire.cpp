@@ -34,6 +34,8 @@ class Message {
         if (value.size() > most) fail(key, "is too long");
         return value;
     }
+    /// Empty where an older program says nothing of it.
+    [[nodiscard]] std::string textIfAny(const char* key) const { return has(key) ? text(key) : std::string(); }
     [[nodiscard]] double number(const char* key) const {
         const Json& found = at(key);
         if (!found.is_number()) fail(key, "is no number");
@@ -146,11 +148,11 @@ school::Judgement judgementFrom(std::string_view json) {
 }
 
 std::string toJson(const Enrolled& e) {
-    return dumped({{"station", e.station}, {"key", e.key}});
+    return dumped({{"station", e.station}, {"key", e.key}, {"person", e.person}});
 }
 Enrolled enrolledFrom(std::string_view json) {
     const Message m(json);
-    return {m.text("station"), m.text("key")};
+    return {m.text("station"), m.text("key"), m.textIfAny("person")};
 }
 std::string toJson(const Enrol& e) {
     return dumped({{"code", e.code}});

@@ -29,6 +29,7 @@ inline constexpr std::size_t kMostMessage = 4 << 20, kMostPiece = 4 << 20;
 
 struct Enrolled {
     std::string station, key;
+    std::string person;  ///< whose it is, by its code; empty: anybody's
 };
 [[nodiscard]] std::string toJson(const Enrolled& enrolled);
 [[nodiscard]] Enrolled enrolledFrom(std::string_view json);

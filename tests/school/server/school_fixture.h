@@ -128,10 +128,12 @@ class School {
         std::string address{};
         std::size_t threads = Settings{}.threads;
         std::vector<std::string> proxies{};
+        bool ownStationsOnly = false;
     };
     School(const fs::path& data, const Odd& odd) : data_(data) {
         Settings settings;
         settings.data = data, settings.database = odd.database;
+        settings.ownStationsOnly = odd.ownStationsOnly;
         settings.port = odd.port, settings.workers = odd.workers, settings.slow = odd.slow;
         settings.oldestProtocol = odd.oldest, settings.newestProtocol = odd.newest;
         settings.signOn = odd.signOn, settings.address = odd.address;

@@ -116,6 +116,57 @@ TEST_F(SchoolTest, WorkOnWhatTheSchoolGaveIsToldAsThat) {
     EXPECT_EQ(books().classPage("c1").cells.size(), 1u);
 }
 
+// Any enrolled station acted for anybody: work and live pictures in another's name.
+TEST_F(SchoolTest, AStationOfAPersonActsForNobodyElseAndClassWorkMayNeedOne) {
+    {
+        Books open = books();
+        const Act act{"server", 1};
+        const school::Person other{"s018", "Jun", "jun", "", "", {"student"}, 1, 0};
+        open.add(std::span(&other, 1), act);
+        open.add(school::SchoolClass{"c1", "Class", "", 0, 1, 0}, act);
+        const std::vector<school::Enrolment> in{{"c1", "s017", "student"}, {"c1", "s018", "student"}};
+        open.enrol(in, act);
+        const std::string exercise = rubric::hashText(tasks::contentHash(blockTask()));
+        open.add(
+            school::Assignment{"now", "c1", exercise, open.pack(exercise)->rubric, "Now", "practice", "", 2000, 9000},
+            act);
+        open.offerCode("ABC-DEF-GHJ-KMP", "Ida's own", 4'000'000'000'000, act, "practice", "s017");
+    }
+    School school(data(), School::Odd{.database = databaseOf(data()), .ownStationsOnly = true});
+    // Whose it is says the code, and not who types it.
+    Enrolment own = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMP", "s018");
+    EXPECT_EQ(own.person, "s017");
+    Chair chair;
+    Enrolment asJun = own;
+    asJun.person = "s018";
+    const std::string first = chair.finish(session(), "one.h5");
+    EXPECT_EQ(test::errorIdOf([&] { (void)chair.push(asJun); }), "station-anothers");
+    EXPECT_EQ(test::errorIdOf([&] { (void)school_station::tasksOf(asJun); }), "station-anothers");
+    httplib::Client http(school.address());
+    const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + own.key}};
+    EXPECT_EQ(http.Get("/api/v1/tasks/s018", headers)->status, 403);
+    EXPECT_EQ(http.Get("/api/v1/tasks/s017", headers)->status, 200);
+    (void)chair.push(own);
+    EXPECT_EQ(books().attempt(first)->person, "s017");
+    EXPECT_EQ(books().attempt(first)->assignment, "now");
+    // One that is anybody's: its class work waits there, and goes when it is enrolled as somebody's own.
+    Chair room;
+    Enrolment anybodys = school_station::enrol(school.address(), kCode, "s018");
+    const std::string waits = room.finish(session(), "two.h5");
+    EXPECT_EQ(test::errorIdOf([&] { (void)room.push(anybodys); }), "station-anybodys");
+    EXPECT_FALSE(books().attempt(waits));
+    EXPECT_EQ(school_station::waitingIn(room.store(), anybodys), 1u);
+    books().offerCode("ABC-DEF-GHJ-KMQ", "Jun's own", 4'000'000'000'000, {"server", 1}, "practice", "s018");
+    Enrolment again = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMQ", "");
+    again.sent = anybodys.sent, again.books = anybodys.books;
+    (void)room.push(again);
+    EXPECT_EQ(books().attempt(waits)->person, "s018");
+    // Revoked by its person, it sends nothing more.
+    books().revoke(again.station, {"s018", 1});
+    (void)room.finish(session(), "three.h5");
+    EXPECT_EQ(test::errorIdOf([&] { (void)room.push(again); }), "not-enrolled");
+}
+
 TEST_F(SchoolTest, WithoutTheServerNothingIsLost) {
     Chair chair;
     Enrolment enrolment;

@@ -509,6 +509,26 @@ TEST_P(BooksTest, ASessionIsOnePersonsWhateverItsBytes) {
     EXPECT_FALSE(books->otherPersonWith(id(1)));
 }
 
+TEST_P(BooksTest, AStationOfAPersonIsTheirsForATerm) {
+    auto books = filled();
+    EXPECT_EQ(
+        test::errorIdOf([&] { books->offerCode("a code of nobody", "x", kNow + kDay, kAdmin, "practice", "s99"); }),
+        "books-unknown");
+    books->offerCode("a code of s1", "s1's own", kNow + kDay, kAdmin, "practice", "s1");
+    const std::string key(40, 'q');
+    const auto own = books->enrolStation("a code of s1", id(0x77), key, kNow);
+    ASSERT_TRUE(own);
+    EXPECT_EQ(own->person, "s1");
+    EXPECT_EQ(own->ends, kNow + Books::kTerm);
+    EXPECT_TRUE(books->stationByKey(key, own->ends - 1));
+    EXPECT_FALSE(books->stationByKey(key, own->ends));
+    EXPECT_EQ(books->station(id(0x77))->person, "s1");
+    EXPECT_THAT(books->stationsOf("s1"), SizeIs(1));
+    EXPECT_THAT(books->stationsOf("s2"), SizeIs(0));
+    EXPECT_EQ(books->station(kStation)->ends, 0) << "those of before go on";
+    EXPECT_FALSE(books->station(id(0x78)));
+}
+
 TEST_P(BooksTest, WorkThatIsNearlyAnothersIsTold) {
     auto books = filled();
     std::vector<std::string> sketch;

@@ -223,8 +223,12 @@ TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
             if (first.find(" " + name + " ") == first.npos)
                 sql(fmt::format("DROP TABLE {}{}", name, isPostgres() ? " CASCADE" : ""));
         // And what later versions added to the first ones.
-        for (const auto& [table, column] :
-             {std::pair{"stations", "kind"}, {"stations", "released"}, {"station_codes", "kind"}})
+        for (const auto& [table, column] : {std::pair{"stations", "kind"},
+                                            {"stations", "released"},
+                                            {"stations", "person"},
+                                            {"stations", "ends"},
+                                            {"station_codes", "kind"},
+                                            {"station_codes", "person"}})
             if (isPostgres())
                 sql(fmt::format("ALTER TABLE {} DROP COLUMN IF EXISTS {}", table, column));
             else if (sql(fmt::format("SELECT count(*) FROM pragma_table_info('{}') WHERE name = '{}'", table,

@@ -148,7 +148,8 @@ std::string personPage(const Looker& who, const std::string& person, const Names
 
 std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const Names& names,
                         const std::vector<school::Score>& scores, const std::vector<school::Mark>& marks,
-                        const std::vector<school::Comment>& comments, const std::vector<school::Books::Alike>& alike) {
+                        const std::vector<school::Comment>& comments, const std::vector<school::Books::Alike>& alike,
+                        bool isAnybodys) {
     const school::Attempt& a = p.attempt;
     HtmlReport page = sitePage(fmt::format("{}: {}", shownAs(names, p.person), a.exercise), who);
     if (scores.empty()) {
@@ -160,6 +161,7 @@ std::string attemptPage(const Looker& who, const school::PushedAttempt& p, const
         if (!s.reason.empty()) page.paragraph(reasonOf(s.reason), s.state == "proven" ? Tone::note : Tone::bad);
         if (!s.result.empty()) page.link("/attempts/" + a.id + "/result", words()("school.whole-result"));
     }
+    if (isAnybodys) page.paragraph(words()("school.station-anybodys"), Tone::note);
     for (const school::Books::Alike& one : alike) {
         page.paragraph(words()("school.alike", one.percent, shownAs(names, one.person)), Tone::bad);
         page.link("/attempts/" + one.attempt, words()("school.alike-other"));

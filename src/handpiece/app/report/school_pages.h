@@ -48,7 +48,7 @@ struct OtherLogIns {
 [[nodiscard]] std::string attemptPage(const Looker& who, const school::PushedAttempt& attempt, const Names& names,
                                       const std::vector<school::Score>& scores, const std::vector<school::Mark>& marks,
                                       const std::vector<school::Comment>& comments,
-                                      const std::vector<school::Books::Alike>& alike = {});
+                                      const std::vector<school::Books::Alike>& alike = {}, bool isAnybodys = false);
 /// What cannot be shown, and why.
 [[nodiscard]] std::string refusalPage(const std::string& what, const std::string& remedy);
 

@@ -173,7 +173,7 @@ Signed Invigilation::add(Entry entry) {
 void Invigilation::follow(const Entry& e) {
     if (e.kind == "begun") {
         begun_.emplace_back(e.exam, e.candidate);
-        if (!e.confirmation.empty()) spent_.insert(e.confirmation);
+        if (!e.confirmation.empty()) spent_.emplace(e.candidate, e.confirmation);
         Sitting sitting;
         sitting.id = e.sitting, sitting.began = e.at, sitting.again = e.again;
         std::vector<std::string> problems;
@@ -186,7 +186,7 @@ void Invigilation::follow(const Entry& e) {
             }
         sitting_ = std::move(sitting);
     } else if (e.kind == "finished" || e.kind == "given-up") {
-        if (!e.confirmation.empty()) spent_.insert(e.confirmation);
+        if (!e.confirmation.empty() && sitting_) spent_.emplace(sitting_->candidate.code, e.confirmation);
         sitting_.reset();
     }
 }
@@ -218,7 +218,7 @@ std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& 
             .as("exam-invigilator", {person});
     guesses_.succeeded(guesser);
     if (pack.format == 1) return {};
-    if (spent_.contains(typed))
+    if (spent_.contains({candidate.code, typed}))
         throw core::Error("this confirmation code has been used", person,
                           "type the next one that stands beside this candidate on the sheet")
             .as("exam-confirmation-used");

@@ -111,7 +111,7 @@ class Invigilation {
     ChainEnd end_{};
     std::optional<Sitting> sitting_;
     std::vector<std::pair<std::string, std::string>> begun_;  ///< exam and candidate, each time
-    std::set<std::string> spent_;                             ///< confirmations
+    std::set<std::pair<std::string, std::string>> spent_;     ///< candidate and confirmation
     school::Throttle guesses_;
 };
 

@@ -517,17 +517,19 @@ std::optional<Assignment> Books::assignment(const std::string& id) const {
 // Stations.
 
 Station stationOf(const Statement& row) {
-    return {row.text(0), row.text(1), row.integer(2), row.integer(3), row.text(4), row.integer(5)};
+    return {row.text(0), row.text(1),    row.integer(2), row.integer(3),
+            row.text(4), row.integer(5), row.text(6),    row.integer(7)};
 }
 
 void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
-                      const std::string& kind) {
+                      const std::string& kind, const std::string& person) {
     if (kind != "practice" && kind != "exam") throw invalid("kind of station", kind, "write practice or exam");
     if (code.size() < 8) throw invalid("code of a station", code, "use 8 characters or more, by chance");
     Transaction transaction(*state_->database);
-    if (!state_->any("INSERT INTO station_codes (hash, name, expires, station, kind) VALUES ($1, $2, $3, '', $4) "
-                     "ON CONFLICT DO NOTHING RETURNING hash",
-                     sha256(code), name, expires, kind))
+    if (!person.empty()) state_->requirePerson(person);
+    if (!state_->any("INSERT INTO station_codes (hash, name, expires, station, kind, person) VALUES ($1, $2, $3, '', "
+                     "$4, $5) ON CONFLICT DO NOTHING RETURNING hash",
+                     sha256(code), name, expires, kind, person))
         throw duplicate(*state_->database, "code of a station", name);
     state_->note(act, kind == "exam" ? "offer exam station code" : "offer station code", name);
     transaction.commit();
@@ -538,18 +540,21 @@ std::optional<Station> Books::enrolStation(const std::string& code, const std::s
     if (!isHex(id, 32)) throw invalid("id of a station", id, "send 32 hexadecimal digits");
     if (key.size() < 32) throw invalid("key of a station", "", "use 32 characters or more, by chance");
     Transaction transaction(*state_->database);
-    Station station{id, {}, now, 0, {}, 0};
+    Station station;
+    station.id = id, station.enrolled = now;
     {
         Statement row = state_->ask(
             "UPDATE station_codes SET station = $1 WHERE hash = $2 AND station = '' AND "
-            "expires > $3 RETURNING name, kind",
+            "expires > $3 RETURNING name, kind, person",
             id, sha256(code), now);
         if (!row.next()) return {};
-        station.name = row.text(0), station.kind = row.text(1);
+        station.name = row.text(0), station.kind = row.text(1), station.person = row.text(2);
+        if (!station.person.empty()) station.ends = now + kTerm;
     }
-    if (!state_->any("INSERT INTO stations (id, name, key_hash, enrolled, revoked, kind, released) VALUES ($1, $2, $3, "
-                     "$4, 0, $5, 0) ON CONFLICT DO NOTHING RETURNING id",
-                     id, station.name, sha256(key), now, station.kind))
+    if (!state_->any(
+            "INSERT INTO stations (id, name, key_hash, enrolled, revoked, kind, released, person, ends) VALUES "
+            "($1, $2, $3, $4, 0, $5, 0, $6, $7) ON CONFLICT DO NOTHING RETURNING id",
+            id, station.name, sha256(key), now, station.kind, station.person, station.ends))
         throw duplicate(*state_->database, "station", id);
     state_->note({"station " + id, now}, "enrol station", id);
     transaction.commit();
@@ -573,11 +578,27 @@ void Books::releaseForExams(const std::string& station, const Act& act) {
     transaction.commit();
 }
 
-std::optional<Station> Books::stationByKey(const std::string& key) const {
-    Statement row =
-        state_->ask(fmt::format("{} WHERE key_hash = $1 AND revoked = 0", kStationColumns).c_str(), sha256(key));
+std::optional<Station> Books::stationByKey(const std::string& key, Milliseconds now) const {
+    Statement row = state_->ask(
+        fmt::format("{} WHERE key_hash = $1 AND revoked = 0 AND (ends = 0 OR ends > $2)", kStationColumns).c_str(),
+        sha256(key), now);
     if (!row.next()) return {};
     return stationOf(row);
+}
+
+std::optional<Station> Books::station(const std::string& id) const {
+    Statement row = state_->ask(fmt::format("{} WHERE id = $1", kStationColumns).c_str(), id);
+    if (!row.next()) return {};
+    return stationOf(row);
+}
+
+std::vector<Station> Books::stationsOf(const std::string& person) const {
+    std::vector<Station> all;
+    Statement rows =
+        state_->ask(fmt::format("{} WHERE person = $1 ORDER BY enrolled, id", kStationColumns).c_str(), person);
+    while (rows.next())
+        all.push_back(stationOf(rows));
+    return all;
 }
 
 void Books::sweep(Milliseconds now) {

@@ -74,6 +74,8 @@ struct Station {
     Milliseconds enrolled = 0, revoked = 0;
     std::string kind = "practice";  ///< or "exam": enrolled by a code of that kind
     Milliseconds released = 0;      ///< for exams, by an administrator
+    std::string person{};           ///< who showed that it is theirs, and whose work alone it sends; empty: anybody's
+    Milliseconds ends = 0;          ///< of such a one: until when, unless they show it again; 0: it does not
     [[nodiscard]] bool mayHoldExams() const { return kind == "exam" && released > 0 && revoked == 0; }
 };
 
@@ -214,17 +216,21 @@ class Books {
     [[nodiscard]] std::optional<Assignment> assignment(const std::string& id) const;
 
     // Stations. Codes and keys are kept as hashes.
-    /// `kind`: of the station that it makes.
+    /// `kind`: of the station that it makes; `person`: whose it will be, for kTerm.
     void offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
-                   const std::string& kind = "practice");
+                   const std::string& kind = "practice", const std::string& person = {});
+    static constexpr Milliseconds kTerm = 200 * std::int64_t{86'400'000};
     /// Once a code; none for one that is unknown, used or too old.
     std::optional<Station> enrolStation(const std::string& code, const std::string& id, const std::string& key,
                                         Milliseconds now);
     void revoke(const std::string& station, const Act& act);
     /// From now on it may hold exams. One of that kind only; again is no error.
     void releaseForExams(const std::string& station, const Act& act);
-    /// None where it is unknown or revoked.
-    [[nodiscard]] std::optional<Station> stationByKey(const std::string& key) const;
+    /// None where it is unknown, revoked or over.
+    [[nodiscard]] std::optional<Station> stationByKey(const std::string& key, Milliseconds now = 0) const;
+    /// Revoked ones too.
+    [[nodiscard]] std::optional<Station> station(const std::string& id) const;
+    [[nodiscard]] std::vector<Station> stationsOf(const std::string& person) const;
 
     // What stations push. True: new; false: it was there already, the same.
     bool push(const PushedAttempt& attempt);

@@ -233,6 +233,9 @@ CREATE TABLE exam_confirmations (
 CREATE TABLE exam_openings (
   exam TEXT PRIMARY KEY REFERENCES exam_settings (exam), code TEXT NOT NULL, made INT8 NOT NULL) STRICT;
 ALTER TABLE exam_sittings ADD COLUMN confirmation INT8 NOT NULL DEFAULT 0;
+ALTER TABLE station_codes ADD COLUMN person TEXT NOT NULL DEFAULT '';
+ALTER TABLE stations ADD COLUMN person TEXT NOT NULL DEFAULT '';
+ALTER TABLE stations ADD COLUMN ends INT8 NOT NULL DEFAULT 0;
 CREATE TABLE sketches (file TEXT NOT NULL, hash TEXT NOT NULL, PRIMARY KEY (file, hash)) STRICT;
 CREATE INDEX sketches_by_hash ON sketches (hash);
 )sql",

@@ -32,7 +32,8 @@ void raiseBooks(Database& database, int version);
 [[nodiscard]] core::Error changed(const Database& database, const std::string& what, const std::string& which);
 [[nodiscard]] core::Error invalid(const std::string& field, const std::string& value, const std::string& remedy);
 
-inline constexpr const char* kStationColumns = "SELECT id, name, enrolled, revoked, kind, released FROM stations";
+inline constexpr const char* kStationColumns =
+    "SELECT id, name, enrolled, revoked, kind, released, person, ends FROM stations";
 /// A row of these.
 [[nodiscard]] Station stationOf(const Statement& row);
 

@@ -43,7 +43,8 @@ constexpr std::array kListed = {
     Listed{"packs", "t hash, t file, t exercise, t title, t rubric, i made", "hash", nullptr},
     Listed{"assignments", "t id, t class, t pack, t rubric, t title, t kind, t helps, i opens, i closes", "id",
            nullptr},
-    Listed{"stations", "t id, t name, i enrolled, i revoked, t kind, i released", "id", nullptr},
+    Listed{"stations", "t id, t name, i enrolled, i revoked, t kind, i released, t person, i ends", "id",
+           "person = $1"},
     Listed{"attempts",
            "t id, t station, t person, t assignment, t exercise, t exercise_hash, t rubric_hash, t session_hashes, "
            "i began, i finished, i received, t device, r motion_scale, r score, r max_score, r whole_score, t passed, "

@@ -43,11 +43,6 @@ constexpr std::size_t kMostServerKb = 300'000;
 
 class AttackTest : public RobustTest {
   protected:
-    void SetUp() override {
-        RobustTest::SetUp();
-        if (IsSkipped()) return;
-        School::furnish(data_, database_);
-    }
     std::string finish(std::size_t chair, const fs::path& recording) {
         return chairs_[chair]->finish(recording, school::newId() + ".h5");
     }
@@ -78,6 +73,7 @@ INSTANTIATE_TEST_SUITE_P(OnBoth, AttackTest, testing::Values("sqlite", "postgres
                          [](const auto& all) { return std::string(all.param); });
 
 TEST_P(AttackTest, RecordingsThatWereMadeToBreakTheirReaderBreakNothingElse) {
+    School::furnish(data_, database_);
     furnish(1, 0, 0);
     std::stringstream honest;
     honest << std::ifstream(session(), std::ios::binary).rdbuf();
@@ -133,6 +129,7 @@ TEST_P(AttackTest, RecordingsThatWereMadeToBreakTheirReaderBreakNothingElse) {
 
 TEST_P(AttackTest, AReaderThatIsKilledCostsNobodyAnything) {
     const int kills = times("HANDPIECE_KILLS", 3);
+    School::furnish(data_, database_);
     furnish(1, 0, 0);
     // Each work may be begun five times.
     std::vector<std::string> attempts;

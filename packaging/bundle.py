@@ -62,7 +62,7 @@ def main():
     libraries.mkdir(parents=True, exist_ok=True)
     qt_plugins = pathlib.Path(subprocess.run(["qmake6", "-query", "QT_INSTALL_PLUGINS"], capture_output=True, text=True, check=True).stdout.strip())
     qt_words = pathlib.Path(subprocess.run(["qmake6", "-query", "QT_INSTALL_TRANSLATIONS"], capture_output=True, text=True, check=True).stdout.strip())
-    roots = [tree / "bin/handpiece", tree / "bin/handpiece-desktop"]
+    programs = [tree / "bin/handpiece", tree / "bin/handpiece-desktop", tree / "libexec/handpiece/handpiece-sandbox"]
     sources = []
     for plugin in PLUGINS:
         if not (qt_plugins / plugin).exists():
@@ -70,7 +70,6 @@ def main():
             continue
         (plugins / plugin).parent.mkdir(parents=True, exist_ok=True)
         shutil.copy2(qt_plugins / plugin, plugins / plugin)
-        roots.append(plugins / plugin)
         sources.append(str(qt_plugins / plugin))
     for words in ("qtbase_ja.qm",):
         if (qt_words / words).exists():
@@ -78,7 +77,7 @@ def main():
             shutil.copy2(qt_words / words, libraries / "qt6/translations" / words)
     wanted, left = {}, set()
     # A plugin is looked at in its own place, where the loader knows the libraries beside it.
-    for root in roots[:2] + [pathlib.Path(s) for s in sources]:
+    for root in programs + [pathlib.Path(s) for s in sources]:
         for name, place in needed(root).items():
             if stem(name) in SYSTEM:
                 left.add(name)

@@ -512,8 +512,15 @@ TEST_F(ExamTest, ItsExerciseIsSealedUntilItOpens) {
     {
         Books open(data());
         const Act act{"server", 1};
-        const std::string exercise = rubric::hashText(tasks::contentHash(school_server::blockTask()));
-        open.add(school::Assignment{"ex2", "c1", exercise, open.pack(exercise)->rubric, "Tomorrow's", "exam", "",
+        const std::string known = rubric::hashText(tasks::contentHash(school_server::blockTask()));
+        tasks::Task other = school_server::blockTask();
+        other.voxelMm = 0.09;
+        const std::vector<std::byte> bytes = tasks::packedTask(other);
+        const std::string file = school::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()}),
+                          exercise = rubric::hashText(tasks::contentHash(other));
+        (void)open.append({std::string(32, '0'), file, bytes.size()}, 0, bytes, 1);
+        open.add(school::Pack{exercise, file, "block", "Block", open.pack(known)->rubric, 1}, act);
+        open.add(school::Assignment{"ex2", "c1", exercise, open.pack(known)->rubric, "Tomorrow's", "exam", "",
                                     now_ + 86'400'000, now_ + 90'000'000},
                  act);
         ExamBooks exams(open);

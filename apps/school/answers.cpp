@@ -26,13 +26,14 @@ constexpr const char *kJson = "application/json", *kCookie = "handpiece", *kPoli
 
 int statusOf(const core::Error& error) {
     static const std::map<std::string, int, std::less<>> statuses{
-        {"message-damaged", 400},  {"books-invalid", 400},  {"not-enrolled", 401},     {"exam-station", 403},
-        {"code-unknown", 403},     {"live-private", 403},   {"books-unknown", 404},    {"books-duplicate", 409},
-        {"books-changed", 409},    {"upload-offset", 409},  {"upload-mismatch", 422},  {"no-space", 507},
-        {"store-locked", 503},     {"store-gone", 503},     {"store-refused", 503},    {"store-full", 503},
-        {"store-busy", 503},       {"protocol-other", 426}, {"exam-damaged", 400},     {"exam-newer", 400},
-        {"exam-other-key", 403},   {"exam-changed", 403},   {"exam-chain", 409},       {"account-suspended", 403},
-        {"exam-invigilator", 403}, {"exam-early", 403},     {"station-anothers", 403}, {"station-anybodys", 403}};
+        {"message-damaged", 400},  {"books-invalid", 400},  {"not-enrolled", 401},    {"exam-station", 403},
+        {"code-unknown", 403},     {"live-private", 403},   {"books-unknown", 404},   {"books-duplicate", 409},
+        {"books-changed", 409},    {"upload-offset", 409},  {"upload-mismatch", 422}, {"no-space", 507},
+        {"store-locked", 503},     {"store-gone", 503},     {"store-refused", 503},   {"store-full", 503},
+        {"store-busy", 503},       {"protocol-other", 426}, {"exam-damaged", 400},    {"exam-newer", 400},
+        {"exam-other-key", 403},   {"exam-changed", 403},   {"exam-chain", 409},      {"account-suspended", 403},
+        {"exam-invigilator", 403}, {"exam-early", 403},     {"code-other", 403},      {"station-anothers", 403},
+        {"station-anybodys", 403}};
     const auto found = statuses.find(error.id());
     return found != statuses.end() ? found->second : 500;
 }

@@ -45,6 +45,7 @@ struct ExamOptions {
     std::string server, code, service = "/var/lib/handpiece-exam", socket = school_exam::kSocket;
     std::string candidate, invigilator, out, receipt, key;
     double everyS = 30.0;
+    bool isNew = false;
 };
 
 school::Act now() {
@@ -96,7 +97,7 @@ void setCandidates(const ExamOptions& o) {
         return std::find_if(there.begin(), there.end(), [&](const auto& c) { return c.person == person; });
     };
     if (!o.person.empty()) {
-        if (const auto found = known(o.person); found != there.end())
+        if (const auto found = known(o.person); found != there.end() && !o.isNew)
             return set(o.person, "(the code of before)", found->code);
         const std::string code = school::newStationCode();
         return set(o.person, code, exam::candidateHash(o.exam, code));
@@ -215,9 +216,11 @@ void tell(const school_exam::Desk& d) {
 }
 
 void begin(const ExamOptions& o) {
+    if (!o.out.ends_with(".handpiece"))
+        throw core::Error("an exercise's file ends in .handpiece", o.out, "name one, so: --out exercise.handpiece");
     const school_exam::ExamClient client(o.socket);
     const school_exam::Desk desk = client.begin(o.candidate, o.invigilator, typedSecret("confirmation code"));
-    if (!o.out.empty()) client.keepExercise(o.out);
+    client.keepExercise(o.out);
     tell(desk);
 }
 
@@ -320,6 +323,7 @@ void addServersExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opti
     candidates.option("--allow", o.allowed, "a locked help that this one has; several times")
         .check(cli::oneOf(helps))
         .takeAll();
+    candidates.flag("--new-code", o.isNew, "another code, where the slip is lost; then: handpiece school exam sign");
     candidates.callback([options] { setCandidates(*options); });
 
     cli::Command invigilator =
@@ -381,7 +385,7 @@ void addStudentsExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     socket(begins);
     begins.option("--candidate", o.candidate, "the code on the slip").required();
     begins.option("--invigilator", o.invigilator, "code of who confirms the candidate's identity").required();
-    begins.option("--out", o.out, "where to put the exercise: a file that ends in .handpiece");
+    begins.option("--out", o.out, "where to put the exercise: a file that ends in .handpiece").required();
     begins.callback([options] { begin(*options); });
     cli::Command opens = top.subcommand(
         "open",

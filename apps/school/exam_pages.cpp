@@ -45,8 +45,14 @@ Page examOf(const Visit& v, const std::string& id, const std::filesystem::path&)
     Sight sight(v);
     for (const school::ExamCandidate& candidate : exams.candidates(id)) {
         report::ExamRow row{candidate, {}, {}, 0, {}};
-        for (const school::ExamSitting& one : sittings)
-            if (one.person == candidate.person) row.sitting = one;
+        // The last; but one that is appealed before one that was decided, and that before what came of beginning again.
+        int most = -1;
+        for (const school::ExamSitting& one : sittings) {
+            if (one.person != candidate.person) continue;
+            const std::vector<school::ExamDecision> decisions = exams.decisionsOf(one.id);
+            const int weight = school::hasOpenAppeal(decisions) ? 2 : decisions.empty() ? 0 : 1;
+            if (weight >= most) most = weight, row.sitting = one;
+        }
         if (row.sitting) {
             const school::Visible seen = sight.of(workOf(*row.sitting));
             if (seen.worth) row.score = scoreOf(v, row.sitting->id);
@@ -90,6 +96,8 @@ Page sittingOf(const Visit& v, const std::string& id, const std::filesystem::pat
     view.mayDecide = isOpen && may(v, Action::mark, relation) && view.seesDecisions;
     noteLookAt(v, "sitting seen", workOf(*sitting));
     report::Names names = namesFor(v, seen, sitting->person);
+    // A code that one logs in by is a name too.
+    if (!seen.whose) names[sitting->person] = id.substr(0, 8);
     return {200, report::sittingPage(lookerOf(v), view, names)};
 }
 

@@ -42,7 +42,7 @@ void enrolForExams(const std::string& server, const std::string& code, const std
                           "move the folder away to enrol it anew: what it still has to tell goes with it");
     core::prepareOutputFolder(folder, true);
     const exam::SigningKey own = exam::keptSigningKey(folder / "station.key");
-    const school_station::Enrolment made = school_station::enrol(server, code, "");
+    const school_station::Enrolment made = school_station::enrol(server, code, "", "exam");
     const std::string serverKey = Line(server, made.key).post("/api/v1/exams/station", own.open);
     if (!school::isHex(serverKey, 64))
         throw core::Error("it gives no key of its own", server, "bring the server up to date").as("server-nonsense");

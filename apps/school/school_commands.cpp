@@ -150,9 +150,8 @@ void enrol(const StationOptions& o) {
     if (before && (!o.again || before->server != o.server))
         throw core::Error("this station belongs to a school already", file.string(),
                           "say --again to enrol it with the same server anew; else move the file away");
-    school_station::Enrolment made = school_station::enrol(o.server, o.code, o.person);
-    if (made.person.empty())
-        throw core::Error("whose work is it?", "--person", "give the school's code of who works here");
+    const std::string person = !o.person.empty() || !before ? o.person : before->person;
+    school_station::Enrolment made = school_station::enrol(o.server, o.code, person);
     if (before && before->person == made.person) made.sent = before->sent, made.books = before->books;
     fs::create_directories(homeOf(o));
     school_station::writeEnrolment(made, file);

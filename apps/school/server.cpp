@@ -158,7 +158,10 @@ struct Server::State : Service {
 
     void configure() {
         http->set_socket_options([this](socket_t socket) {
-            httplib::default_socket_options(socket);
+            // At once after an end; and not the library's SO_REUSEPORT, by which a second server starts beside the
+            // first.
+            const int yes = 1;
+            (void)::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
             listening = socket;
         });
         http->new_task_queue = [threads = settings.threads] { return new GrowingPool(threads); };

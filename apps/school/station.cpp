@@ -157,10 +157,11 @@ void writeEnrolment(const Enrolment& e, const fs::path& file) {
     core::writeFile(file, text, {.ownerOnly = true});
 }
 
-Enrolment enrol(const std::string& server, const std::string& code, const std::string& person) {
+Enrolment enrol(const std::string& server, const std::string& code, const std::string& person,
+                const std::string& kind) {
     Line line(server, {});
-    const school_wire::Enrolled made =
-        school_wire::enrolledFrom(line.post("/api/v1/enrol", school_wire::toJson(school_wire::Enrol{code})));
+    const school_wire::Enrolled made = school_wire::enrolledFrom(
+        line.post("/api/v1/enrol", school_wire::toJson(school_wire::Enrol{code, person, kind})));
     return {server, made.station, made.key, made.person.empty() ? person : made.person, 0};
 }
 

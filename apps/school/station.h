@@ -29,7 +29,9 @@ void writeEnrolment(const Enrolment& enrolment, const std::filesystem::path& fil
 
 /// With a one-time code; one of a person's account says whose work it will send, else `person` does. Throws
 /// core::Error: "code-unknown", "server-silent", "server-nonsense", an address that is none.
-[[nodiscard]] Enrolment enrol(const std::string& server, const std::string& code, const std::string& person);
+/// "code-other" (it is not spent then). `kind`: "exam" of a station for exams.
+[[nodiscard]] Enrolment enrol(const std::string& server, const std::string& code, const std::string& person,
+                              const std::string& kind = "practice");
 
 struct Pushed {
     std::size_t attempts = 0, judgements = 0, files = 0;

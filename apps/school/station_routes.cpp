@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stations push and ask.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <span>
 
@@ -22,6 +24,25 @@ bool isStudentIn(const school::Books& books, const std::string& schoolClass, con
     return std::any_of(in.begin(), in.end(),
                        [&](const school::Enrolment& one) { return one.person == person && one.role == "student"; });
 }
+
+/// A code that is not what is meant is not spent.
+void requireMeant(const school::Books& books, const school_wire::Enrol& enrol, school::Milliseconds now) {
+    const auto code = books.offered(school::typedStationCode(enrol.code), now);
+    if (!code) return;  // whoever spends it says so
+    if (enrol.kind && *enrol.kind != code->kind)
+        throw core::Error(fmt::format("this code is of a station for {}", code->kind == "exam" ? "exams" : "practice"),
+                          code->name,
+                          code->kind == "exam" ? "as the service's user: handpiece school exam enrol"
+                                               : "have one for exams made: handpiece school code --exam")
+            .as("code-other", {code->kind});
+    if (!enrol.person || code->kind == "exam") return;
+    if (enrol.person->empty() && code->person.empty())
+        throw core::Error("whose work is it?", code->name, "give --person with the school's code of who works here")
+            .as("code-other", {"person"});
+    if (!enrol.person->empty() && !code->person.empty() && *enrol.person != code->person)
+        throw core::Error("this code is another person's", code->name, "make one on your own account's page")
+            .as("code-other", {"person"});
+}
 }  // namespace
 
 void requireActsFor(const school::Station& station, const std::string& person) {
@@ -41,6 +62,7 @@ std::vector<Entry> stationRoutes(Service* of) {
              const school_wire::Enrol enrol = school_wire::enrolFrom(request.body);
              // A key of 256 bits out of the system's randomness.
              school_wire::Enrolled made{school::newId(), school::newSecret(), {}};
+             requireMeant(*of->books.take(), enrol, of->clock());
              const auto station = of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station,
                                                                  made.key, of->clock());
              if (!station)

@@ -155,10 +155,17 @@ Enrolled enrolledFrom(std::string_view json) {
     return {m.text("station"), m.text("key"), m.textIfAny("person")};
 }
 std::string toJson(const Enrol& e) {
-    return dumped({{"code", e.code}});
+    Json json{{"code", e.code}};
+    if (e.person) json["person"] = *e.person;
+    if (e.kind) json["kind"] = *e.kind;
+    return dumped(std::move(json));
 }
 Enrol enrolFrom(std::string_view json) {
-    return {Message(json).text("code", 200)};
+    const Message m(json);
+    Enrol enrol{m.text("code", 200), {}, {}};
+    if (m.has("person")) enrol.person = m.text("person", 64);
+    if (m.has("kind")) enrol.kind = m.text("kind", 16);
+    return enrol;
 }
 
 std::string toJson(const Received& r) {

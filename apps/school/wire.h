@@ -35,6 +35,9 @@ struct Enrolled {
 [[nodiscard]] Enrolled enrolledFrom(std::string_view json);
 struct Enrol {
     std::string code;
+    /// What it is meant for, so that a code that is not that is not spent: a person's school code or "" where the code
+    /// says whose it is; "exam" of a station for exams. Older programs say nothing of it.
+    std::optional<std::string> person{}, kind{};
 };
 [[nodiscard]] std::string toJson(const Enrol& enrol);
 [[nodiscard]] Enrol enrolFrom(std::string_view json);

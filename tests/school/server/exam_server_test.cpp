@@ -218,7 +218,7 @@ TEST_F(ExamTest, IsFetchedSatWithoutTheNetworkToldAndProven) {
     EXPECT_THAT(fetched.files, ElementsAre(school::sha256Of(session())));
     {
         Books(data()).offerCode("ABC-DEF-GHJ-KMT", "exam room, 2", 4'000'000'000'000, {"server", 1}, "exam");
-        const school_station::Enrolment other = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMT", "");
+        const school_station::Enrolment other = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMT", "", "exam");
         release();
         httplib::Client http(school.address());
         const httplib::Headers headers{{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + other.key}};

@@ -134,8 +134,16 @@ TEST_F(SchoolTest, AStationOfAPersonActsForNobodyElseAndClassWorkMayNeedOne) {
     }
     School school(data(), School::Odd{.database = databaseOf(data()), .ownStationsOnly = true});
     // Whose it is says the code, and not who types it.
-    Enrolment own = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMP", "s018");
+    // And one that is not what is meant is not spent.
+    const auto tried = [&](const char* code, const char* person, const char* kind = "practice") {
+        return test::errorIdOf([&] { (void)school_station::enrol(school.address(), code, person, kind); });
+    };
+    EXPECT_EQ(tried("ABC-DEF-GHJ-KMP", "s018"), "code-other");
+    EXPECT_EQ(tried("ABC-DEF-GHJ-KMP", "", "exam"), "code-other");
+    EXPECT_EQ(tried(kCode, ""), "code-other") << "whose work is it?";
+    Enrolment own = school_station::enrol(school.address(), "ABC-DEF-GHJ-KMP", "");
     EXPECT_EQ(own.person, "s017");
+    EXPECT_EQ(tried("ABC-DEF-GHJ-KMP", ""), "code-unknown") << "spent";
     Chair chair;
     Enrolment asJun = own;
     asJun.person = "s018";

@@ -32,6 +32,10 @@ void makeExam(Books& books) {
     exams.set(ExamCandidate{"ex1", "s1", hash(11), 25, 10, "scale-bar"}, kAdmin);
     exams.set(ExamCandidate{"ex1", "s2", hash(12), 0, 0, ""}, kAdmin);
     exams.set(ExamInvigilator{"ex1", "t1", "$argon2id$pin"}, kAdmin);
+    // Nobody confirms themselves.
+    EXPECT_EQ(test::errorIdOf([&] { exams.set(ExamInvigilator{"ex1", "s1", "-"}, kAdmin); }), "books-invalid");
+    EXPECT_EQ(test::errorIdOf([&] { exams.set(ExamCandidate{"ex1", "t1", hash(13), 0, 0, ""}, kAdmin); }),
+              "books-invalid");
     exams.add(ExamPack{"ex1", 1, hash(21), "a pack", hash(2), "signature", 0}, kAdmin);
 }
 ExamEntry entry(std::int64_t number, const char* kind, const std::string& sitting = {}) {

@@ -535,6 +535,14 @@ void Books::offerCode(const std::string& code, const std::string& name, Millisec
     transaction.commit();
 }
 
+std::optional<Books::Offered> Books::offered(const std::string& code, Milliseconds now) const {
+    Statement row =
+        state_->ask("SELECT name, kind, person FROM station_codes WHERE hash = $1 AND station = '' AND expires > $2",
+                    sha256(code), now);
+    if (!row.next()) return {};
+    return Offered{row.text(0), row.text(1), row.text(2)};
+}
+
 std::optional<Station> Books::enrolStation(const std::string& code, const std::string& id, const std::string& key,
                                            Milliseconds now) {
     if (!isHex(id, 32)) throw invalid("id of a station", id, "send 32 hexadecimal digits");

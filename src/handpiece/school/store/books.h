@@ -220,7 +220,12 @@ class Books {
     void offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
                    const std::string& kind = "practice", const std::string& person = {});
     static constexpr Milliseconds kTerm = 200 * std::int64_t{86'400'000};
-    /// Once a code; none for one that is unknown, used or too old.
+    /// What a code makes, without using it; none for one that is unknown, used or too old.
+    struct Offered {
+        std::string name{}, kind{}, person{};
+    };
+    [[nodiscard]] std::optional<Offered> offered(const std::string& code, Milliseconds now) const;
+    /// Once a code; none as above.
     std::optional<Station> enrolStation(const std::string& code, const std::string& id, const std::string& key,
                                         Milliseconds now);
     void revoke(const std::string& station, const Act& act);

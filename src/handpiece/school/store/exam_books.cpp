@@ -88,6 +88,8 @@ void ExamBooks::set(const ExamCandidate& c, const Act& act) {
     Transaction transaction(*state_.database);
     requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", c.exam), *state_.database, c.exam);
     state_.requirePerson(c.person);
+    if (state_.any("SELECT 1 FROM exam_invigilators WHERE exam = $1 AND person = $2", c.exam, c.person))
+        throw invalid("candidate", c.person, "nobody confirms themselves: this one is an invigilator of this exam");
     if (state_.any("SELECT 1 FROM exam_codes WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code, c.person))
         throw duplicate(*state_.database, "candidate's code in exam", c.exam);
     state_.run("INSERT INTO exam_codes (exam, code, person) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", c.exam, c.code,
@@ -107,6 +109,8 @@ void ExamBooks::set(const ExamInvigilator& i, const Act& act) {
     Transaction transaction(*state_.database);
     requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", i.exam), *state_.database, i.exam);
     state_.requirePerson(i.person);
+    if (state_.any("SELECT 1 FROM exam_candidates WHERE exam = $1 AND person = $2", i.exam, i.person))
+        throw invalid("invigilator", i.person, "nobody confirms themselves: this one is a candidate of this exam");
     state_.run(
         "INSERT INTO exam_invigilators (exam, person, pin) VALUES ($1, $2, $3) ON CONFLICT (exam, person) DO UPDATE "
         "SET pin = excluded.pin",

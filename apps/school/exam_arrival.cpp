@@ -120,10 +120,22 @@ school::ExamPack signExam(Books& books, const std::string& id, const exam::Signi
 namespace {
 constexpr const char* kBroken = "exam chain broken";
 
-/// The number of the code that an invigilator typed. Whoever has the station's key has none.
+/// The number of the code that an invigilator typed; negative where another station had it before. Whoever has the
+/// station's key has none that is good.
 std::int64_t confirmationOf(ExamBooks& exams, const exam::Entry& e, const std::string& person) {
+    bool isUsedHere = false, isUsedThere = false;
+    for (const school::ExamSitting& one : exams.sittingsOf(e.exam))
+        if (one.person == person)
+            for (const school::ExamEntry& kept : exams.entriesOf(one.id)) {
+                if (kept.kind != "begun" && kept.kind != "given-up") continue;
+                if (exam::entryFrom(kept.text, "the books").confirmation != e.confirmation) continue;
+                // The entry itself may have come before.
+                if (kept.station == e.station && kept.number == e.number) continue;
+                (kept.station == e.station ? isUsedHere : isUsedThere) = true;
+            }
     for (const school::ExamConfirmation& one : exams.confirmations(e.exam))
-        if (one.person == person && school::isPassword(one.hash, e.confirmation)) return one.number;
+        if (!isUsedHere && one.person == person && school::isPassword(one.hash, e.confirmation))
+            return isUsedThere ? -one.number : one.number;
     throw core::Error("no invigilator of this exam has confirmed this candidate", "station " + e.station,
                       "an invigilator types a code of their sheet at the station")
         .as("exam-invigilator", {e.invigilator});

@@ -64,6 +64,8 @@ Page examOf(const Visit& v, const std::string& id, const std::filesystem::path&)
         if (others.decisions || row.isAppealed) view.rows.push_back(std::move(row));
     }
     report::Names names{{v.person.code, v.person.name}};
+    for (const report::ExamRow& row : view.rows)
+        if (!others.whose && row.sitting) names[row.candidate.person] = row.sitting->id.substr(0, 8);
     if (others.whose)
         for (const report::ExamRow& row : view.rows)
             if (const auto person = v.books.person(row.candidate.person)) names[person->code] = person->name;

@@ -64,7 +64,7 @@ Fetched fetchExams(const std::filesystem::path& folder) {
             const exam::Signed pack = exam::parted(line.get("/api/v1/exams/" + id + "/pack"), "the exam's pack");
             const exam::Pack opened = exam::openedPack(pack, station.serverKey, "the exam's pack");
             std::filesystem::path file;
-            if (!exam::hasExercise(folder, opened.file)) {
+            if (!exam::hasExercise(folder, opened)) {
                 file = folder / ("exercise." + school::newId());
                 core::writeFile(file, line.get("/api/v1/exams/" + id + "/exercise"), {.ownerOnly = true});
             }

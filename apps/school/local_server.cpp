@@ -10,6 +10,8 @@
 #include <string>
 #include <string_view>
 
+#include "school/growing_pool.h"
+
 namespace handpiece::school_exam {
 namespace {
 
@@ -68,9 +70,20 @@ std::optional<uid_t> LocalServer::accountOf(const httplib::Request& request) {
     return ec == std::errc() && end == said.data() + said.size() ? std::optional(account) : std::nullopt;
 }
 
+LocalServer::LocalServer() {
+    constexpr std::size_t kMost = 400;
+    new_task_queue = [] { return new school_server::GrowingPool(kMost); };
+}
+
 bool LocalServer::process_and_close_socket(socket_t socket) {
     LocalStream stream(socket);
-    bool isWell = true;
+    ucred other{};
+    socklen_t size = sizeof other;
+    bool isWell = getsockopt(socket, SOL_SOCKET, SO_PEERCRED, &other, &size) == 0;
+    {
+        const std::lock_guard lock(mutex_);
+        isWell = ++open_[other.uid] <= kMostOfAccount && isWell;
+    }
     // In slices, so that who ends the server waits for none that says nothing.
     for (int idle = 0; isWell && idle < kIdleSlices && svr_sock_ != INVALID_SOCKET; ++idle) {
         if (!stream.isThere(POLLIN, kSliceMs)) continue;
@@ -80,6 +93,8 @@ bool LocalServer::process_and_close_socket(socket_t socket) {
     }
     shutdown(socket, SHUT_RDWR);
     close(socket);
+    const std::lock_guard lock(mutex_);
+    if (--open_[other.uid] == 0) open_.erase(other.uid);
     return isWell;
 }
 

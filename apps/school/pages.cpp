@@ -116,7 +116,7 @@ Page reviewOf(const Visit& v, const std::string& id, ReviewShelf& shelf) {
     const auto attempt = v.books.attempt(id);
     const school::Visible seen = attempt ? visibleOf(v, *attempt) : school::Visible{};
     if (!seen.recording || !seen.worth) return notYours();  // it has the points that were lost
-    const bool isWhole = !attempt->files.empty() &&
+    const bool isWhole = !attempt->files.empty() && v.books.isWhole(id) &&
                          std::all_of(attempt->files.begin(), attempt->files.end(), [&](const std::string& file) {
                              return core::isThere(v.books.files().path(file));
                          });

@@ -43,6 +43,7 @@ T Readings::kept(std::map<std::string, T>& shelf, const std::string& key, std::s
 Readings::Picture Readings::picture(const school::Books& books, const school::PushedAttempt& attempt,
                                     const std::string& exercise) {
     constexpr int kWidth = 640, kHeight = 480;
+    if (!books.isWhole(attempt.attempt.id)) return {{}, "the session has not come yet"};
     try {
         return kept<Picture>(pictures_, attempt.attempt.id, 200, [&] {
             const ExerciseFile file(books, exercise);

@@ -140,8 +140,7 @@ std::vector<Entry> stationRoutes(Service* of) {
              const school::Upload file = upload(request, station);
              const auto open = of->books.take();
              const std::uint64_t there = open->received(file, of->clock());
-             // All its bytes may lie there unproven, where a server was killed: then the station sends none, and it is.
-             answer(response, toJson(school_wire::Received{there, open->files().has(file.hash)}));
+             answer(response, toJson(school_wire::Received{there, open->hasDelivered(file)}));
          })},
         {"PUT", "/api/v1/files/([0-9a-f]{64})",
          StationHandler([of, upload](const Request& request, Response& response, const school::Station& station) {

@@ -73,7 +73,11 @@ bool Worker::workOnce() {
         // Another was quicker: then it is there.
         (void)books.finish(*job, score);
     } catch (const core::Error& e) {
-        if (!isLost) (void)books.giveBack(*job);
+        // No reader can start here: that costs the work nothing. One was killed: not at once again.
+        constexpr school::Milliseconds kPause = 10'000;
+        const bool isHere = e.id() == "sandbox-start";
+        const school::Milliseconds pause = isHere ? 3 * kPause : e.id() == "sandbox-killed" ? job->turn * kPause : 0;
+        if (!isLost) (void)books.giveBack(*job, books.sharedTime(clock_()) + pause, !isHere);
         if (e.problem() != "cancelled") throw;
     }
     return true;

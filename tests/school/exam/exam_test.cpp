@@ -333,7 +333,7 @@ TEST_F(AtAStation, ASealedExerciseIsOpenedByItsCodeAlone) {
     const fs::path file = folder_.path() / "sealed";
     core::writeFile(file, sealed(std::as_bytes(std::span(kBytes)), "exam-1", kOpening));
     (void)installPack(folder(), signedPack(pack), file);
-    EXPECT_TRUE(hasExercise(folder(), pack.file));
+    EXPECT_TRUE(hasExercise(folder(), pack));
     std::vector<std::string> problems;
     ASSERT_THAT(packsIn(folder(), problems), SizeIs(1));
     EXPECT_TRUE(packsIn(folder(), problems).front().isSealed);
@@ -370,7 +370,7 @@ TEST_F(AtAStation, ASealedExerciseIsOpenedByItsCodeAlone) {
     }
     // What it opens to is what the pack names.
     const std::string easier = "an easier one";
-    core::writeFile(folder() / "exercises" / (pack.file + ".sealed"),
+    core::writeFile(folder() / "exercises" / (pack.exam + "-" + pack.file + ".sealed"),
                     sealed(std::as_bytes(std::span(easier)), "exam-1", kOpening));
     EXPECT_EQ(errorIdOf([&] { openExercise(folder(), pack, kOpening); }), "exam-exercise-other");
 }

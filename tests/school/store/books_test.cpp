@@ -8,6 +8,7 @@
 #include <functional>
 #include <thread>
 
+#include "handpiece/school/store/books_accounts.h"
 #include "handpiece/school/store/retention.h"
 #include "school/store/books_fixture.h"
 #include "support/error_of.h"
@@ -527,6 +528,61 @@ TEST_P(BooksTest, AStationOfAPersonIsTheirsForATerm) {
     EXPECT_THAT(books->stationsOf("s2"), SizeIs(0));
     EXPECT_EQ(books->station(kStation)->ends, 0) << "those of before go on";
     EXPECT_FALSE(books->station(id(0x78)));
+    // Who may not come in sends nothing, and no code of theirs makes a station.
+    books->offerCode("a second code of s1", "another", kNow + kDay, kAdmin, "practice", "s1");
+    EXPECT_TRUE(books->offered("a second code of s1", kNow));
+    books->erase("s1", kAdmin);
+    EXPECT_FALSE(books->stationByKey(key, kNow));
+    EXPECT_FALSE(books->offered("a second code of s1", kNow));
+    EXPECT_FALSE(books->enrolStation("a second code of s1", id(0x79), std::string(40, 'r'), kNow));
+}
+
+TEST_P(BooksTest, NamingAFilesHashDeliversNothing) {
+    auto books = filled();
+    books->offerCode("another code", "Room 3", kNow + kDay, kAdmin);
+    ASSERT_TRUE(books->enrolStation("another code", id(2), std::string(40, 'x'), kNow));
+    const std::string bytes = "another person's recording";
+    const Upload own{kStation, sha256(bytes), bytes.size()}, thiefs{id(2), sha256(bytes), bytes.size()};
+    books->push(attempt(1, {bytes}));
+    EXPECT_TRUE(books->append(own, 0, std::as_bytes(std::span(bytes)), kNow));
+    PushedAttempt named = attempt(2, {bytes});
+    named.station = id(2), named.person = "s2";
+    books->push(named);
+    EXPECT_TRUE(books->isWhole(id(1)));
+    EXPECT_FALSE(books->isWhole(id(2)));
+    EXPECT_THAT(books->missingFiles(id(2)), SizeIs(1)) << "it is asked for the bytes";
+    EXPECT_EQ(books->received(thiefs, kNow), 0u);
+    EXPECT_FALSE(books->hasDelivered(thiefs));
+    EXPECT_THAT(BooksAccounts(*books).filesOf("s2"), SizeIs(0));
+    EXPECT_THAT(BooksAccounts(*books).filesOf("s1"), SizeIs(1));
+    EXPECT_EQ(books->progress("arrival").waiting, 1);
+    // A byte less is not it.
+    EXPECT_EQ(test::errorIdOf([&] {
+                  std::string wrong = bytes;
+                  wrong.back() = '!';
+                  (void)books->append(thiefs, 0, std::as_bytes(std::span(wrong)), kNow);
+              }),
+              "upload-mismatch");
+    // Who has all of it has it.
+    EXPECT_TRUE(books->append(thiefs, 0, std::as_bytes(std::span(bytes)), kNow));
+    EXPECT_TRUE(books->isWhole(id(2)));
+    EXPECT_EQ(books->received(thiefs, kNow), bytes.size());
+    EXPECT_EQ(books->progress("arrival").waiting, 2);
+}
+
+TEST_P(BooksTest, WorkThatNoReaderCanStartForWaitsAndLosesNoTurn) {
+    auto books = filled();
+    books->push(attempt(1, {"one"}));
+    const std::string bytes = "one";
+    EXPECT_TRUE(books->append({kStation, sha256(bytes), bytes.size()}, 0, std::as_bytes(std::span(bytes)), kNow));
+    for (int i = 0; i < 20; ++i) {
+        const Milliseconds at = kNow + i * 100;
+        const auto job = books->takeJob("w", at, 1000);
+        ASSERT_TRUE(job) << i;
+        EXPECT_TRUE(books->giveBack(*job, at + 50, false));
+        EXPECT_FALSE(books->takeJob("w", at + 10, 1000)) << "not at once again";
+    }
+    EXPECT_EQ(books->progress("arrival").failed, 0);
 }
 
 TEST_P(BooksTest, WorkThatIsNearlyAnothersIsTold) {

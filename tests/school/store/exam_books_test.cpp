@@ -34,7 +34,9 @@ void makeExam(Books& books) {
     exams.set(ExamInvigilator{"ex1", "t1", "$argon2id$pin"}, kAdmin);
     // Nobody confirms themselves.
     EXPECT_EQ(test::errorIdOf([&] { exams.set(ExamInvigilator{"ex1", "s1", "-"}, kAdmin); }), "books-invalid");
-    EXPECT_EQ(test::errorIdOf([&] { exams.set(ExamCandidate{"ex1", "t1", hash(13), 0, 0, ""}, kAdmin); }),
+    EXPECT_EQ(test::errorIdOf([&] {
+                  exams.set(ExamCandidate{"ex1", "t1", hash(13), 0, 0, ""}, kAdmin);
+              }),
               "books-invalid");
     exams.add(ExamPack{"ex1", 1, hash(21), "a pack", hash(2), "signature", 0}, kAdmin);
 }

@@ -34,8 +34,9 @@ fs::path packFolder(const fs::path& folder, const std::string& exam) {
 fs::path exerciseFile(const fs::path& folder, const std::string& sha256) {
     return folder / "exercises" / (sha256 + ".handpiece");
 }
-fs::path sealedFile(const fs::path& folder, const std::string& sha256) {
-    return folder / "exercises" / (sha256 + ".sealed");
+/// Each exam's own: two of one exercise have two codes.
+fs::path sealedFile(const fs::path& folder, const Pack& pack) {
+    return folder / "exercises" / (pack.exam + "-" + pack.file + ".sealed");
 }
 fs::path entryFile(const fs::path& folder, std::int64_t number) {
     return folder / "chain" / fmt::format("{:010}.txt", number);
@@ -65,13 +66,12 @@ void keepStation(const StationIdentity& s, const fs::path& folder) {
     core::writeFile(folder / "station.txt", lines.text(), {.ownerOnly = true});
 }
 
-bool hasExercise(const fs::path& folder, const std::string& sha256) {
-    return school::isHex(sha256, 64) &&
-           (core::isThere(exerciseFile(folder, sha256)) || core::isThere(sealedFile(folder, sha256)));
+bool hasExercise(const fs::path& folder, const Pack& pack) {
+    return core::isThere(exerciseFile(folder, pack.file)) || core::isThere(sealedFile(folder, pack));
 }
 
 void openExercise(const fs::path& folder, const Pack& pack, const std::string& typedCode) {
-    const std::vector<std::byte> bytes = unsealed(core::readFile(sealedFile(folder, pack.file)), pack.exam, typedCode);
+    const std::vector<std::byte> bytes = unsealed(core::readFile(sealedFile(folder, pack)), pack.exam, typedCode);
     if (school::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) != pack.file)
         throw core::Error("the exam's exercise is not the one that its pack names", pack.exam,
                           "fetch it again from the school's server")
@@ -99,8 +99,8 @@ Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::pat
                               "fetch it again from the school's server")
                 .as("exam-exercise-other", {hash, pack.file});
         core::prepareOutputFolder(folder / "exercises", true);
-        fs::rename(exercise, isSealed ? sealedFile(folder, pack.file) : exerciseFile(folder, pack.file));
-    } else if (!hasExercise(folder, pack.file)) {
+        fs::rename(exercise, isSealed ? sealedFile(folder, pack) : exerciseFile(folder, pack.file));
+    } else if (!hasExercise(folder, pack)) {
         throw core::Error("the exam's exercise is not here", pack.exam, "fetch it from the school's server")
             .as("exam-exercise-other", {"", pack.file});
     }
@@ -127,8 +127,8 @@ std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>&
             one.text.signature = signatureFrom(textOf(in / "pack.sig", 4096), (in / "pack.sig").string());
             one.pack = openedPack(one.text, station.serverKey, (in / "pack.txt").string());
             one.exercise = exerciseFile(folder, one.pack.file);
-            one.isSealed = one.pack.format != 1 && !core::isThere(one.exercise) &&
-                           core::isThere(sealedFile(folder, one.pack.file));
+            one.isSealed =
+                one.pack.format != 1 && !core::isThere(one.exercise) && core::isThere(sealedFile(folder, one.pack));
             // What was written there since is no exam's exercise.
             if (!one.isSealed && (!core::isThere(one.exercise) || school::sha256Of(one.exercise) != one.pack.file))
                 throw core::Error("the exam's exercise is not the one that its pack names", one.exercise.string(),
@@ -201,7 +201,7 @@ void Invigilation::requirePatience(const std::string& who, Milliseconds now) {
 
 std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& candidate, const std::string& person,
                                              const std::string& code, Milliseconds now, const std::string& from) {
-    const std::string guesser = person + from;
+    const std::string guesser = from.empty() ? person : person + " at " + from;
     requirePatience(guesser, now);
     const std::string typed = school::typedStationCode(code);
     const auto found = std::find_if(pack.invigilators.begin(), pack.invigilators.end(),
@@ -226,7 +226,7 @@ std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& 
 }
 
 void Invigilation::open(const std::string& typedCode, Milliseconds now, const std::string& from) {
-    const std::string guesser = "the exercise's seal" + from;
+    const std::string guesser = from.empty() ? "the exercise's seal" : "the exercise's seal at " + from;
     requirePatience(guesser, now);
     const std::string typed = school::typedStationCode(typedCode);
     std::vector<std::string> problems;

@@ -38,7 +38,7 @@ struct Installed {
 /// Those that hold; the others' reasons go into `problems`.
 [[nodiscard]] std::vector<Installed> packsIn(const std::filesystem::path& folder, std::vector<std::string>& problems);
 /// Sealed or not.
-[[nodiscard]] bool hasExercise(const std::filesystem::path& folder, const std::string& sha256);
+[[nodiscard]] bool hasExercise(const std::filesystem::path& folder, const Pack& pack);
 
 /// Opens the exercise of a pack that is here. Throws core::Error "exam-seal".
 void openExercise(const std::filesystem::path& folder, const Pack& pack, const std::string& typedCode);

@@ -516,6 +516,11 @@ std::optional<Assignment> Books::assignment(const std::string& id) const {
 
 // Stations.
 
+/// Whose station or code it is, they may come in: not suspended, not erased.
+constexpr const char* kIsIn =
+    "(person = '' OR (person IN (SELECT code FROM people WHERE erased = 0) AND person NOT IN (SELECT person FROM "
+    "suspensions)))";
+
 Station stationOf(const Statement& row) {
     return {row.text(0), row.text(1),    row.integer(2), row.integer(3),
             row.text(4), row.integer(5), row.text(6),    row.integer(7)};
@@ -536,9 +541,12 @@ void Books::offerCode(const std::string& code, const std::string& name, Millisec
 }
 
 std::optional<Books::Offered> Books::offered(const std::string& code, Milliseconds now) const {
-    Statement row =
-        state_->ask("SELECT name, kind, person FROM station_codes WHERE hash = $1 AND station = '' AND expires > $2",
-                    sha256(code), now);
+    Statement row = state_->ask(
+        fmt::format("SELECT name, kind, person FROM station_codes WHERE hash = $1 AND station = '' AND expires > $2 "
+                    "AND {}",
+                    kIsIn)
+            .c_str(),
+        sha256(code), now);
     if (!row.next()) return {};
     return Offered{row.text(0), row.text(1), row.text(2)};
 }
@@ -552,8 +560,11 @@ std::optional<Station> Books::enrolStation(const std::string& code, const std::s
     station.id = id, station.enrolled = now;
     {
         Statement row = state_->ask(
-            "UPDATE station_codes SET station = $1 WHERE hash = $2 AND station = '' AND "
-            "expires > $3 RETURNING name, kind, person",
+            fmt::format(
+                "UPDATE station_codes SET station = $1 WHERE hash = $2 AND station = '' AND expires > $3 AND {} "
+                "RETURNING name, kind, person",
+                kIsIn)
+                .c_str(),
             id, sha256(code), now);
         if (!row.next()) return {};
         station.name = row.text(0), station.kind = row.text(1), station.person = row.text(2);
@@ -588,7 +599,8 @@ void Books::releaseForExams(const std::string& station, const Act& act) {
 
 std::optional<Station> Books::stationByKey(const std::string& key, Milliseconds now) const {
     Statement row = state_->ask(
-        fmt::format("{} WHERE key_hash = $1 AND revoked = 0 AND (ends = 0 OR ends > $2)", kStationColumns).c_str(),
+        fmt::format("{} WHERE key_hash = $1 AND revoked = 0 AND (ends = 0 OR ends > $2) AND {}", kStationColumns, kIsIn)
+            .c_str(),
         sha256(key), now);
     if (!row.next()) return {};
     return stationOf(row);

@@ -245,7 +245,11 @@ class Books {
     [[nodiscard]] std::uint64_t received(const Upload& upload, Milliseconds now);
     bool append(const Upload& upload, std::uint64_t offset, std::span<const std::byte> piece, Milliseconds now);
     [[nodiscard]] const ContentFiles& files() const;
-    /// Files of a station's attempts that have not come yet.
+    /// Whether this station has sent all of its bytes: naming a hash delivers nothing.
+    [[nodiscard]] bool hasDelivered(const Upload& upload) const;
+    /// Whether all files of an attempt came from its own station.
+    [[nodiscard]] bool isWhole(const std::string& attempt) const;
+    /// Files of a station's attempts that have not come from it yet.
     [[nodiscard]] std::vector<std::string> missingFiles(const std::string& station) const;
     /// Throws away what a killed server left of files and uploads, older than a day.
     void sweep(Milliseconds now);
@@ -290,8 +294,9 @@ class Books {
     bool renew(Job& job, Milliseconds now, Milliseconds lease);
     /// Score and end of the job, once: false: another was quicker, and nothing was stored.
     bool finish(const Job& job, const Score& score);
-    /// Back to the others: this worker cannot do it.
-    bool giveBack(const Job& job);
+    /// Back to the others: this worker cannot do it. Nobody takes it before `notBefore`; it does not count as one of
+    /// its turns where that was no affair of the work's.
+    bool giveBack(const Job& job, Milliseconds notBefore = 0, bool counts = true);
     [[nodiscard]] Progress progress(const std::string& campaign) const;
 
     /// A look at something, or what else leaves no other trace.

@@ -118,7 +118,7 @@ std::vector<std::string> BooksAccounts::filesOf(const std::string& person) const
     std::vector<std::string> all;
     Statement rows = state_.ask(
         "SELECT DISTINCT f.file FROM attempts a JOIN attempt_files f ON f.attempt = a.id JOIN files w ON w.hash = "
-        "f.file WHERE a.person = $1 ORDER BY f.file",
+        "f.file JOIN deliveries d ON d.file = f.file AND d.station = a.station WHERE a.person = $1 ORDER BY f.file",
         person);
     while (rows.next())
         all.push_back(rows.text(0));

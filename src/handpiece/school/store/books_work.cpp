@@ -77,8 +77,9 @@ void Books::State::queueArrived(const std::string& attempt, Milliseconds now) {
         "SELECT (SELECT coalesce(max(number), 0) FROM jobs) + 1, 'arrival', t.id, "
         "coalesce((SELECT a.rubric FROM assignments a WHERE a.id = t.assignment), t.rubric_hash), CAST($1 AS INT8), "
         "'waiting', '', 0, 0 FROM attempts t WHERE t.id = $2 AND NOT EXISTS (SELECT 1 FROM attempt_files f "
-        "WHERE f.attempt = t.id AND NOT EXISTS (SELECT 1 FROM files c WHERE c.hash = f.file)) "
-        "ON CONFLICT (campaign, attempt) DO NOTHING",
+        "WHERE f.attempt = t.id AND NOT EXISTS (SELECT 1 FROM files c JOIN deliveries d ON d.file = c.hash WHERE "
+        "c.hash = "
+        "f.file AND d.station = t.station)) ON CONFLICT (campaign, attempt) DO NOTHING",
         now, attempt);
 }
 
@@ -186,19 +187,46 @@ bool Books::push(const Comment& c) {
     return isNew;
 }
 
+bool Books::hasDelivered(const Upload& upload) const {
+    return state_->files.has(upload.hash) &&
+           state_->any("SELECT 1 FROM deliveries WHERE file = $1 AND station = $2", upload.hash, upload.station);
+}
+
+bool Books::isWhole(const std::string& attempt) const {
+    return !state_->any(
+        "SELECT 1 FROM attempts t JOIN attempt_files f ON f.attempt = t.id WHERE t.id = $1 AND NOT EXISTS (SELECT 1 "
+        "FROM files c JOIN deliveries d ON d.file = c.hash WHERE c.hash = f.file AND d.station = t.station)",
+        attempt);
+}
+
 std::uint64_t Books::received(const Upload& upload, Milliseconds now) {
-    const std::uint64_t there = state_->files.received(upload);
+    const std::uint64_t part = state_->files.received(upload), there = hasDelivered(upload) ? upload.bytes : part;
     // A server that was killed may have put it in its place and not have written it down.
     if (state_->files.has(upload.hash)) state_->keepFile(upload.hash, now);
     return there;
 }
 
 bool Books::append(const Upload& upload, std::uint64_t offset, std::span<const std::byte> piece, Milliseconds now) {
+    if (hasDelivered(upload)) {
+        state_->keepFile(upload.hash, now);
+        return true;
+    }
     if (!state_->files.append(upload, offset, piece)) return false;
     state_->keepFile(upload.hash, now);
     Transaction transaction(*state_->database);
     state_->run("INSERT INTO deliveries (file, station, made) VALUES ($1, $2, $3) ON CONFLICT DO NOTHING", upload.hash,
                 upload.station, now);
+    std::vector<std::string> attempts;
+    {
+        Statement rows = state_->ask(
+            "SELECT DISTINCT f.attempt FROM attempt_files f JOIN attempts t ON t.id = f.attempt WHERE f.file = $1 AND "
+            "t.station = $2 ORDER BY f.attempt",
+            upload.hash, upload.station);
+        while (rows.next())
+            attempts.push_back(rows.text(0));
+    }
+    for (const std::string& attempt : attempts)
+        state_->queueArrived(attempt, now);
     transaction.commit();
     return true;
 }
@@ -211,7 +239,8 @@ std::vector<std::string> Books::missingFiles(const std::string& station) const {
     std::vector<std::string> all;
     Statement rows = state_->ask(
         "SELECT DISTINCT f.file FROM attempts t JOIN attempt_files f ON f.attempt = t.id WHERE t.station = $1 AND NOT "
-        "EXISTS (SELECT 1 FROM files c WHERE c.hash = f.file) ORDER BY f.file",
+        "EXISTS (SELECT 1 FROM files c JOIN deliveries d ON d.file = c.hash WHERE c.hash = f.file AND d.station = "
+        "t.station) ORDER BY f.file",
         station);
     while (rows.next())
         all.push_back(rows.text(0));
@@ -395,7 +424,9 @@ std::int64_t Books::rescore(const std::string& campaign, const std::string& assi
             "SELECT (SELECT coalesce(max(number), 0) FROM jobs) + row_number() OVER (ORDER BY t.id), $1, t.id, $2, "
             "CAST($3 AS INT8), 'waiting', '', 0, 0 FROM attempts t WHERE t.assignment = $4 AND NOT EXISTS "
             "(SELECT 1 FROM jobs j WHERE j.campaign = $1 AND j.attempt = t.id) AND NOT EXISTS (SELECT 1 FROM "
-            "attempt_files f WHERE f.attempt = t.id AND NOT EXISTS (SELECT 1 FROM files c WHERE c.hash = f.file)) "
+            "attempt_files f WHERE f.attempt = t.id AND NOT EXISTS (SELECT 1 FROM files c JOIN deliveries d ON d.file "
+            "= c.hash "
+            "WHERE c.hash = f.file AND d.station = t.station)) "
             "RETURNING number",
             campaign, rubric, act.at, assignment);
         while (rows.next())
@@ -424,7 +455,7 @@ std::optional<Job> Books::takeJob(const std::string& worker, Milliseconds now, M
     {
         Statement row = state_->ask(
             fmt::format("UPDATE jobs SET state = 'taken', worker = $1, lease_until = $2, turn = turn + 1 WHERE number "
-                        "= (SELECT number FROM jobs WHERE state = 'waiting' OR (state = 'taken' AND lease_until <= $3) "
+                        "= (SELECT number FROM jobs WHERE state IN ('waiting', 'taken') AND lease_until <= $3 "
                         "ORDER BY number LIMIT 1{}) RETURNING number, turn, campaign, attempt, rubric, lease_until",
                         skip)
                 .c_str(),
@@ -469,13 +500,14 @@ bool Books::finish(const Job& job, const Score& s) {
     return true;
 }
 
-bool Books::giveBack(const Job& job) {
+bool Books::giveBack(const Job& job, Milliseconds notBefore, bool counts) {
     Transaction transaction(*state_->database, Database::Access::beside);
     const bool mine = state_->any(
-        fmt::format("UPDATE jobs SET state = CASE WHEN turn >= {} THEN 'failed' ELSE 'waiting' END, lease_until = 0 {}",
+        fmt::format("UPDATE jobs SET state = CASE WHEN turn >= {} AND $6 = 1 THEN 'failed' ELSE 'waiting' END, "
+                    "lease_until = $5, turn = turn - CASE WHEN $6 = 1 THEN 0 ELSE 1 END {}",
                     static_cast<int>(kMostTurns), kStillMine)
             .c_str(),
-        job.number, job.turn, job.campaign, job.attempt);
+        job.number, job.turn, job.campaign, job.attempt, notBefore, std::int64_t{counts});
     transaction.commit();
     return mine;
 }

@@ -113,13 +113,10 @@ bool ContentFiles::has(const std::string& hash) const {
 std::uint64_t ContentFiles::received(const Upload& upload) const {
     const fs::path part = pieces(upload), whole = path(upload.hash);
     std::error_code none;
-    if (const std::uintmax_t size = fs::file_size(whole, none); !none) {
-        if (size != upload.bytes)
-            throw core::Error(fmt::format("{} bytes are promised, and this file has {}", upload.bytes, size),
-                              upload.hash, "send its own size")
-                .as("books-invalid", {"bytes"});
-        return size;
-    }
+    if (const std::uintmax_t size = fs::file_size(whole, none); !none && size != upload.bytes)
+        throw core::Error(fmt::format("{} bytes are promised, and this file has {}", upload.bytes, size), upload.hash,
+                          "send its own size")
+            .as("books-invalid", {"bytes"});
     const std::uintmax_t size = fs::file_size(part, none);
     return none ? 0 : size;
 }
@@ -128,11 +125,6 @@ bool ContentFiles::append(const Upload& upload, std::uint64_t offset, std::span<
     const fs::path part = pieces(upload), whole = path(upload.hash);
     const std::uint64_t there = received(upload);
     std::error_code none;
-    if (has(upload.hash)) {
-        // Another was quicker with the same file.
-        fs::remove(part, none);
-        return true;
-    }
     if (offset != there || piece.size() > upload.bytes - there)
         throw core::Error(fmt::format("{} of {} bytes are there, and {} came for place {}", there, upload.bytes,
                                       piece.size(), offset),
@@ -154,7 +146,11 @@ bool ContentFiles::append(const Upload& upload, std::uint64_t offset, std::span<
                           "send it again from the beginning")
             .as("upload-mismatch", {is});
     }
-    // Another station, or the same one twice, may have brought it in the meantime.
+    // Another station, or the same one twice, may have brought it before: this one has shown that it has it, too.
+    if (has(upload.hash)) {
+        fs::remove(part, none);
+        return true;
+    }
     if (const int why = core::replaceFile(part, whole, true); why != 0 && !has(upload.hash))
         throw notWritable(whole, why);
     return true;

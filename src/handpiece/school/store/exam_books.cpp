@@ -266,9 +266,7 @@ void ExamBooks::follow(const ExamEntry& e, const ExamSitting* begins) {
     if (begins) {
         if (!state_.any("INSERT INTO exam_sittings (id, exam, station, person, candidate, pack, invigilator, began, "
                         "number, state, ended, confirmation) VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $9, 'begun', 0, "
-                        "CASE WHEN EXISTS (SELECT 1 FROM exam_sittings WHERE exam = $2 AND person = $4 AND "
-                        "abs(confirmation) = $10) THEN -CAST($10 AS INT8) ELSE CAST($10 AS INT8) END) ON CONFLICT DO "
-                        "NOTHING RETURNING id",
+                        "$10) ON CONFLICT DO NOTHING RETURNING id",
                         begins->id, begins->exam, e.station, begins->person, begins->candidate, begins->pack,
                         begins->invigilator, begins->began, e.number, begins->confirmation))
             throw changed(*state_.database, "sitting", begins->id);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // An exam from its making to the appeal, over real HTTP, and what was tried against it: each attack that
 // docs/school-exams.md says is stopped.
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -503,6 +505,13 @@ TEST_F(ExamTest, WhoHasNoInvigilatorsCodeTellsOfNoBeginning) {
     EXPECT_EQ(errorIdOf([&] { tell(given); }), "exam-invigilator");
     given.confirmation = kPins[1];
     tell(given);
+    // Spent, each of them, also by who has the station's keys.
+    exam::Entry again = begun;
+    again.sitting = school::newId();
+    for (const int spent : {1, 2}) {
+        again.confirmation = kPins[spent];
+        EXPECT_EQ(errorIdOf([&] { tell(again); }), "exam-invigilator") << spent;
+    }
     begun.pack = kept.hash, begun.sitting = school::newId(), begun.format = 1, begun.confirmation.clear();
     tell(begun);
     EXPECT_THAT(doubts(begun.sitting), testing::Contains(HasSubstr("is its station's word")));
@@ -614,6 +623,47 @@ TEST_F(ExamTest, AnotherAccountOfTheStationHasNoHandInAnExam) {
               "exam-account");
     EXPECT_EQ(as(4001, [&] { return id([&] { client.giveUp(sitting, "t1", kPins[1]); }); }), "")
         << "nobody else's guesses make the invigilator wait";
+}
+
+TEST_F(ExamTest, AnotherAccountThatHoldsOnHoldsNobodyElse) {
+    if (::geteuid() != 0) GTEST_SKIP() << "only root can ask as another account";
+    School school(data());
+    setUpStation(school);
+    const Service at(service());
+    fs::permissions(folder_.path(), fs::perms::all);
+    const std::string socketFile = service().string() + ".sock";
+    int lines[2];
+    ASSERT_EQ(::pipe(lines), 0);
+    const pid_t holder = ::fork();
+    if (holder == 0) {
+        if (::setgid(4003) != 0 || ::setuid(4003) != 0) ::_exit(1);
+        sockaddr_un to{};
+        to.sun_family = AF_UNIX;
+        socketFile.copy(to.sun_path, sizeof to.sun_path - 1);
+        std::vector<int> held;
+        for (bool isTold = false;;) {
+            for (const int one : held)
+                if (::send(one, "a", 1, MSG_NOSIGNAL) < 0) ::close(one);
+            for (int i = 0; i < 30; ++i) {
+                const int one = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+                if (::connect(one, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0 &&
+                    ::send(one, "GET /desk HTTP/1.1\r\nX: ", 23, MSG_NOSIGNAL) == 23)
+                    held.push_back(one);
+                else
+                    ::close(one);
+            }
+            if (!isTold) isTold = ::write(lines[1], "h", 1) == 1;
+            ::usleep(200'000);
+        }
+    }
+    char one = 0;
+    ASSERT_EQ(::read(lines[0], &one, 1), 1);
+    for (int i = 0; i < 10; ++i)
+        EXPECT_EQ(errorIdOf([&] { (void)at.client().desk(); }), "");
+    EXPECT_EQ(at.client().begin(kCandidate, "t1", kPin).title, "Block exam");
+    ::kill(holder, SIGKILL);
+    ::waitpid(holder, nullptr, 0);
+    ::close(lines[0]), ::close(lines[1]);
 }
 
 TEST_F(ExamTest, AServiceThatIsKilledLosesNothing) {

@@ -72,11 +72,15 @@ struct ExamService::State {
         std::error_code none;
         fs::remove(settings.socket, none);
         http.set_address_family(AF_UNIX);
+        http.set_socket_options([this](socket_t socket) { listening = socket; });
         // The port means nothing to a socket of this machine.
         if (!http.bind_to_port(settings.socket.string(), 80))
             throw core::Error("nobody can listen there", settings.socket.string(),
                               "name a socket in a folder that this user may write to")
                 .as("port-taken", {settings.socket.string(), ""});
+        // The library lets five wait to be taken: whoever fills these is one account.
+        constexpr int kMostWaiting = 1024;
+        (void)::listen(listening, kMostWaiting);
         // Every account of this machine may speak to it: what it does hangs on codes.
         ::chmod(settings.socket.c_str(), 0666);
     }
@@ -343,6 +347,7 @@ struct ExamService::State {
     std::condition_variable news;
     bool hasNews = false;
     std::atomic<bool> ends{false};
+    socket_t listening = INVALID_SOCKET;
     LocalServer http;
     std::thread teller;
 };

@@ -22,7 +22,7 @@ CACHE = dict(re.findall(r"^([\w-]+):\w+=(.*)$", (BUILD / "CMakeCache.txt").read_
 PAGES = "share/man/man1"
 COMPLETION = ["share/bash-completion/completions/{}", "share/zsh/vendor-completions/_{}", "share/fish/vendor_completions.d/{}.fish"]
 COMPONENTS = {
-    "handpiece": ("handpiece", 40, ["bin/handpiece", PAGES + "/handpiece*.1", *(c.format("handpiece") for c in COMPLETION)]),
+    "handpiece": ("handpiece", 40, ["bin/handpiece", "libexec/handpiece/handpiece-sandbox", PAGES + "/handpiece*.1", *(c.format("handpiece") for c in COMPLETION)]),
     "desktop": ("handpiece-desktop", 40,
                 ["bin/handpiece-desktop", PAGES + "/handpiece-desktop.1", "share/applications/handpiece-desktop.desktop",
                  "share/icons/hicolor/*/apps/handpiece.*", "share/metainfo/*.xml", "share/mime/packages/handpiece.xml"]),

@@ -112,7 +112,7 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
     return sandbox::ask(request.dump(-1, ' ', false, Json::error_handler_t::replace), readable, bounds, progress);
 }
 
-/// A recording of an hour has some 30 MB [R: docs/formats/session.md] and is cut again in minutes.
+/// A recording of half an hour has some 30 MB [R] (docs/session-format.md) and is cut again in minutes.
 sandbox::Bounds boundsFor(const Files& files) {
     double megabytes = 0.0;
     for (const fs::path& one : files.sessions) {

@@ -103,7 +103,7 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
     }
     const fs::path exercise = files.exercise.empty() ? fs::path() : core::wholePath(files.exercise);
     if (!exercise.empty() && !core::isThere(exercise))
-        throw core::Error("there is no such file", exercise.string(), "check its name").as("no-such-file");
+        throw core::Error("there is no such file", exercise.string(), "check its name");
     if (!exercise.empty()) readable.push_back(exercise);
     for (const fs::path& one : besides)
         readable.push_back(core::wholePath(one));

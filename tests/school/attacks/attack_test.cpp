@@ -182,7 +182,7 @@ class Hostile {
             from.sin_addr.s_addr = htonl(INADDR_LOOPBACK + 1 + kind % 3);  // three machines
             to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
             to.sin_port = htons(static_cast<std::uint16_t>(port));
-            const timeval patience{5, 0};
+            const timeval patience{1, 0};
             setsockopt(line, SOL_SOCKET, SO_RCVTIMEO, &patience, sizeof patience);
             if (bind(line, reinterpret_cast<const sockaddr*>(&from), sizeof from) == 0 &&
                 connect(line, reinterpret_cast<const sockaddr*>(&to), sizeof to) == 0)
@@ -252,6 +252,8 @@ class Hostile {
 };
 
 TEST_P(AttackTest, ThirtyStationsWorkBesideTwoHundredHostileClients) {
+    if (isPostgres() && !std::getenv("HANDPIECE_KILLS"))
+        GTEST_SKIP() << "the door is the same for both databases: HANDPIECE_KILLS=1 holds it before this one, too";
     constexpr std::size_t kStations = 30, kHostile = 200;
     furnish(kStations, 1, 400'000);
     const auto server = serve();

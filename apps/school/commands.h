@@ -16,6 +16,8 @@ void addPeopleCommands(cli::Command& app);
 void addBackupCommands(cli::Command& app);
 /// On a station: enrol, push, status.
 void addStationCommands(cli::Command& app);
+/// On a machine that cuts works again for a server elsewhere: worker enrol, worker run.
+void addWorkerCommands(cli::Command& app);
 /// exam, verify-receipt.
 void addExamCommands(cli::Command& app);
 /// lti, retention, statements.

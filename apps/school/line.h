@@ -5,10 +5,17 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <functional>
 #include <string>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/file.h"
 #include "school/http.h"
 #include "school/wire.h"
 
@@ -39,6 +46,39 @@ class Line {
     std::string get(const std::string& path) { return heard(http_.Get(path)); }
     std::string post(const std::string& path, const std::string& json) {
         return heard(http_.Post(path, json, "application/json"));
+    }
+    /// Into `file`, of no more than `most` bytes: who sends more, or others than it said, is no server of ours.
+    /// `goesOn` is asked between pieces.
+    void fetch(const std::string& path, const std::filesystem::path& file, std::uint64_t most,
+               const std::function<bool()>& goesOn) {
+        const core::FileStream into = core::createOwnFile(file);
+        if (!into)
+            throw core::Error("what the server sends cannot be kept here", file.string(),
+                              "see whether the disk is full")
+                .as(core::writeErrorId(errno), {std::strerror(errno)});
+        std::string said;
+        std::uint64_t bytes = 0;
+        bool isWell = false, isWritten = true;
+        const auto result = http_.Get(
+            path,
+            [&](const httplib::Response& response) {
+                isWell = response.status == 200;
+                return true;
+            },
+            [&](const char* data, std::size_t size) {
+                constexpr std::size_t kMostSaid = 1 << 16;
+                bytes += size;
+                if (!isWell) said.append(data, std::min(size, kMostSaid - std::min(kMostSaid, said.size())));
+                if (isWell && bytes <= most) isWritten = std::fwrite(data, 1, size, into.get()) == size;
+                return isWritten && bytes <= std::max<std::uint64_t>(most, kMostSaid) && goesOn();
+            });
+        if (!isWritten || std::fflush(into.get()) != 0)
+            throw core::Error("what the server sends cannot be kept here", file.string(),
+                              "see whether the disk is full")
+                .as(core::writeErrorId(errno), {std::strerror(errno)});
+        if (isWell && bytes > most) throw school_wire::errorFrom("", 200);
+        if (result && !isWell) throw school_wire::errorFrom(said, result->status);
+        if (!result) throw silent(server_, httplib::to_string(result.error()));
     }
     std::string put(const std::string& path, const std::string& bytes) {
         return heard(http_.Put(path, bytes, "application/octet-stream"));

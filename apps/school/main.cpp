@@ -11,6 +11,7 @@ int main(int argc, char** argv) {
              handpiece::school_cli::addPeopleCommands(top);
              handpiece::school_cli::addBackupCommands(top);
              handpiece::school_cli::addStationCommands(top);
+             handpiece::school_cli::addWorkerCommands(top);
              handpiece::school_cli::addExamCommands(top);
              handpiece::school_cli::addElsewhereCommands(top);
              handpiece::school_cli::addLiveCommands(top);

@@ -427,7 +427,8 @@ Page stationsPage(const Visit& v, const std::string& shown) {
     std::vector<std::vector<Cell>> rows;
     for (const school::Station& one : stations)
         rows.push_back({{one.name},
-                        {one.kind != "exam"  ? "\u2013"
+                        {one.kind == "worker" ? word("cuts-again")
+                         : one.kind != "exam" ? "\u2013"
                          : one.released == 0 ? word("exams-unreleased")
                                              : words()("school-office.exams-since", report::momentOf(one.released))},
                         {report::momentOf(one.enrolled)},

@@ -20,11 +20,16 @@ using StationHandler = std::function<void(const httplib::Request&, httplib::Resp
 /// A page for who is logged in. What it may not show it refuses itself (pages.h).
 using Shown = std::function<Page(const httplib::Request&, const Visit&)>;
 
+/// For a machine that cuts works again; no other station's key opens these, and its key opens no other.
+struct WorkerHandler {
+    StationHandler answer;
+};
+
 /// A route and what answers it; who may call is what the answer needs to know.
 struct Entry {
     const char* method;
     const char* pattern;
-    std::variant<Handler, StationHandler, Shown> answer;
+    std::variant<Handler, StationHandler, Shown, WorkerHandler> answer;  ///< in the order of Caller
     std::size_t most = school_wire::kMostMessage;  ///< bytes that may be sent; more only of who is logged in
     [[nodiscard]] Caller caller() const { return static_cast<Caller>(answer.index()); }
 };
@@ -43,6 +48,7 @@ struct Entry {
 [[nodiscard]] std::vector<Entry> officeRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> liveRoutes(Service* service);
 [[nodiscard]] std::vector<Entry> teachingRoutes(Service* service);
+[[nodiscard]] std::vector<Entry> workerRoutes(Service* service);
 
 /// Whose a station is was shown by that person; it acts for nobody else. Throws core::Error "station-anothers".
 void requireActsFor(const school::Station& station, const std::string& person);

@@ -29,7 +29,7 @@ using school::Books;
 struct BooksOptions {
     std::string data, database, name, code, file, role = "student", person, schoolClass, exercise;
     std::size_t hours = 24, days = 120;
-    bool isForExams = false;
+    bool isForExams = false, isForWorks = false;
 };
 
 void addBooksOptions(cli::Command& command, BooksOptions& o) {
@@ -47,7 +47,10 @@ void offerCode(const BooksOptions& o) {
     const std::string code = school::newStationCode();
     const Act act = now();
     books.offerCode(code, o.name, act.at + static_cast<school::Milliseconds>(o.hours) * 3'600'000, act,
-                    o.isForExams ? "exam" : "practice", o.person);
+                    o.isForExams   ? "exam"
+                    : o.isForWorks ? "worker"
+                                   : "practice",
+                    o.person);
     fmt::print("{}\n", code);
 }
 
@@ -207,7 +210,11 @@ void addBooksCommands(cli::Command& app) {
         .showDefault();
     code.option("--person", o.person, "whose own it will be: it sends their work alone");
     code.flag("--exam", o.isForExams,
-              "of a station that holds exams; when it has enrolled: handpiece school exam release");
+              "of a station that holds exams; when it has enrolled: handpiece school exam release")
+        .excludes("--person");
+    code.flag("--worker", o.isForWorks, "of a machine that cuts works again: there, handpiece school worker enrol")
+        .excludes("--person")
+        .excludes("--exam");
     code.callback([options] { offerCode(*options); });
 
     cli::Command person = app.subcommand("person", "Adds a person" + where);

@@ -45,7 +45,7 @@ void serve(const ServeOptions& asked) {
     listenForEnd();
     const SchoolSettings o = settled(asked.given, ownEnvironment());
     if (asked.worker) {
-        school_server::Worker worker({o.data, o.database}, school_server::systemClock());
+        school_server::Worker worker(school_server::worksOf({o.data, o.database}, school_server::systemClock()));
         worker.start();
         tellManager("READY=1");
         fmt::print("works for {} (Ctrl-C ends it)\n", o.database.empty() ? o.data : o.database);
@@ -122,7 +122,8 @@ void addServeCommand(cli::Command& app) {
         .takeAll();
     command.option("--sign-on-secret", o.given.signOnSecret, "file with the secret that it sends");
     command.option("--sign-on-header", o.given.signOnHeader, "in which it names who logs in (X-Handpiece-User)");
-    command.flag("--worker", o.worker, "only work: cut sessions again for the same books");
+    command.flag("--worker", o.worker,
+                 "only work: cut sessions again for books that this machine sees; else: handpiece school worker");
     command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
     command.callback([options, command] {
         if (command.isGiven("--workers")) options->given.workers = options->workers;

@@ -57,8 +57,8 @@ std::size_t roomForConnections() {
 /// All there are: what is not in here is answered with 404.
 std::vector<Entry> everyRoute(Service* service) {
     std::vector<Entry> all;
-    for (const auto room :
-         {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes, signOnRoutes, officeRoutes})
+    for (const auto room : {generalRoutes, stationRoutes, pageRoutes, liveRoutes, teachingRoutes, examRoutes,
+                            signOnRoutes, officeRoutes, workerRoutes})
         for (Entry& entry : room(service))
             all.push_back(std::move(entry));
     return all;
@@ -126,7 +126,7 @@ struct Server::State : Service {
         letManyWait();
         guard = std::make_unique<SlowGuard>(listening, settings.slow, bounds());
         for (std::size_t i = 0; i < settings.workers; ++i)
-            workers.push_back(std::make_unique<Worker>(WorkerSettings{settings.data, settings.database}, clock));
+            workers.push_back(std::make_unique<Worker>(worksOf({settings.data, settings.database}, clock)));
     }
 
     static std::unique_ptr<httplib::Server> make(const Settings& s) {
@@ -232,7 +232,9 @@ struct Server::State : Service {
             const config::LanguageHere here(languageOf(request));
             if (const auto* anyones = std::get_if<Handler>(&entry.answer)) return (*anyones)(request, response);
             if (const auto* stations = std::get_if<StationHandler>(&entry.answer))
-                return (*stations)(request, response, stationOf(request));
+                return (*stations)(request, response, stationOf(request, false));
+            if (const auto* machines = std::get_if<WorkerHandler>(&entry.answer))
+                return machines->answer(request, response, stationOf(request, true));
             show(entry, request, response);
         };
         const auto withBody = [this, entry, handler](const Request& request, Response& response,
@@ -339,9 +341,16 @@ struct Server::State : Service {
         if (!said.starts_with(kBearer) || said.size() >= 200) return {};
         return books.take()->stationByKey(said.substr(kBearer.size()), clock());
     }
-    school::Station stationOf(const Request& request) {
+    school::Station stationOf(const Request& request, bool isWorker) {
         requireSpoken(request);
-        if (auto station = stationBy(request)) return *station;
+        if (auto station = stationBy(request)) {
+            if ((station->kind == "worker") == isWorker) return *station;
+            throw core::Error(isWorker ? "this station cuts no works again" : "this machine cuts works again, no more",
+                              station->name,
+                              isWorker ? "enrol one that does: handpiece school code --worker"
+                                       : "enrol it as a station: handpiece school code")
+                .as("code-other", {station->kind});
+        }
         throw core::Error("the server does not know this station, or no longer", "",
                           "enrol it with a new code: handpiece school enrol")
             .as("not-enrolled");

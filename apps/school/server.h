@@ -46,7 +46,7 @@ using Clock = std::function<school::Milliseconds()>;
 
 /// Who may call a route.
 /// A person is one who is logged in, by a cookie; what they may see is looked at page by page (pages.h).
-enum class Caller { anyone, station, person };
+enum class Caller { anyone, station, person, worker };
 struct Route {
     std::string method, pattern;  ///< a regular expression that has to match the whole path
     Caller caller;

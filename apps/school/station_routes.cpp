@@ -29,13 +29,24 @@ bool isStudentIn(const school::Books& books, const std::string& schoolClass, con
 void requireMeant(const school::Books& books, const school_wire::Enrol& enrol, school::Milliseconds now) {
     const auto code = books.offered(school::typedStationCode(enrol.code), now);
     if (!code) return;  // whoever spends it says so
-    if (enrol.kind && *enrol.kind != code->kind)
-        throw core::Error(fmt::format("this code is of a station for {}", code->kind == "exam" ? "exams" : "practice"),
+    if (enrol.kind && *enrol.kind != code->kind) {
+        const bool isExam = code->kind == "exam", isWorker = code->kind == "worker";
+        throw core::Error(isExam     ? "this code is of a station for exams"
+                          : isWorker ? "this code is of a machine that cuts works again"
+                                     : "this code is of a station for practice",
                           code->name,
-                          code->kind == "exam" ? "as the service's user: handpiece school exam enrol"
-                                               : "have one for exams made: handpiece school code --exam")
+                          isExam                  ? "as the service's user: handpiece school exam enrol"
+                          : isWorker              ? "there: handpiece school worker enrol"
+                          : *enrol.kind == "exam" ? "have one for exams made: handpiece school code --exam"
+                                                  : "have one of its kind made: handpiece school code --worker")
             .as("code-other", {code->kind});
-    if (!enrol.person || code->kind == "exam") return;
+    }
+    // An older program's, that does not say what it enrols, is of a station for practice or exams.
+    if (!enrol.kind && code->kind == "worker")
+        throw core::Error("this code is of a machine that cuts works again", code->name,
+                          "there: handpiece school worker enrol")
+            .as("code-other", {code->kind});
+    if (!enrol.person || code->kind != "practice") return;
     if (enrol.person->empty() && code->person.empty())
         throw core::Error("whose work is it?", code->name, "give --person with the school's code of who works here")
             .as("code-other", {"person"});

@@ -68,6 +68,10 @@ class Message {
         }
         return all;
     }
+    [[nodiscard]] Message message(const char* key) const {
+        if (!at(key).is_object()) fail(key, "is no object");
+        return Message(at(key));
+    }
     [[nodiscard]] std::vector<Message> messages(const char* key) const {
         const Json& found = at(key);
         if (!found.is_array() || found.size() > kMostTasks) fail(key, "is no list, or too long");
@@ -212,6 +216,29 @@ std::vector<Task> tasksFrom(std::string_view json) {
         tasks.push_back({m.text("assignment"), m.text("exercise_hash"), m.text("title"),
                          m.whole<school::Milliseconds>("opens_ms"), m.whole<school::Milliseconds>("closes_ms")});
     return tasks;
+}
+
+std::string toJson(const Work& w) {
+    const auto file = [](const Work::File& f) { return Json{{"hash", f.hash}, {"bytes", f.bytes}}; };
+    Json sessions = Json::array();
+    for (const Work::File& one : w.sessions)
+        sessions.push_back(file(one));
+    return dumped({{"number", w.number},
+                   {"turn", w.turn},
+                   {"lease_ms", w.leaseMs},
+                   {"question", w.question},
+                   {"sessions", std::move(sessions)},
+                   {"exercise", file(w.exercise)}});
+}
+Work workFrom(std::string_view json) {
+    const auto file = [](const Message& m) { return Work::File{m.text("hash", 64), m.whole<std::uint64_t>("bytes")}; };
+    const Message m(json);
+    Work work{m.whole<std::int64_t>("number"), m.whole<std::int64_t>("turn"), m.whole<school::Milliseconds>("lease_ms"),
+              m.text("question", kMostMessage)};
+    for (const Message& one : m.messages("sessions"))
+        work.sessions.push_back(file(one));
+    work.exercise = file(m.message("exercise"));
+    return work;
 }
 
 std::string framed(std::string_view json, std::string_view rest) {

@@ -71,6 +71,20 @@ struct Task {
 [[nodiscard]] std::string toJson(const std::vector<Task>& tasks);
 [[nodiscard]] std::vector<Task> tasksFrom(std::string_view json);
 
+/// A work that a worker on another machine is lent.
+struct Work {
+    struct File {
+        std::string hash;  ///< SHA-256
+        std::uint64_t bytes = 0;
+    };
+    std::int64_t number = 0, turn = 0;  ///< of the job; which time it is lent
+    school::Milliseconds leaseMs = 0;   ///< it is lent for, unless it is renewed
+    std::string question;               ///< sandboxed::questionOf()
+    std::vector<File> sessions{};
+    File exercise{};
+};
+[[nodiscard]] std::string toJson(const Work& work);
+[[nodiscard]] Work workFrom(std::string_view json);
 /// What a station shows of the work that goes on at it.
 inline constexpr std::size_t kMostPicture = 300'000;
 struct Live {

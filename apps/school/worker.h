@@ -4,27 +4,21 @@
 /// Takes attempts that wait to be scored, cuts their sessions again, and enters what comes of it.
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
-#include <filesystem>
-#include <functional>
+#include <memory>
 #include <mutex>
-#include <string>
 #include <thread>
 
-#include "handpiece/school/store/books.h"
+#include "school/lent_work.h"
 
 namespace handpiece::school_server {
 
-struct WorkerSettings {
-    std::filesystem::path data;
-    std::string database{};
-    school::Milliseconds leaseMs = 120'000;  ///< renewed while it works: after a crash another takes over then
-    std::chrono::milliseconds pause{1000};   ///< between two looks for work
-};
-
 class Worker {
   public:
-    Worker(WorkerSettings settings, std::function<school::Milliseconds()> clock);
+    /// `pause` lies between two looks for work; where one fails they grow to a minute.
+    explicit Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause = std::chrono::seconds(1),
+                    std::chrono::milliseconds renewal = std::chrono::milliseconds(kLeaseMs / 4));
     ~Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -37,12 +31,9 @@ class Worker {
 
   private:
     void loop();
-    /// `isLost`: its lease ran out, and it is another's by now. Throws core::Error "cancelled" then, or when it ends.
-    [[nodiscard]] school::Score heard(school::Books& books, school::Job& job, bool& isLost);
 
-    const WorkerSettings settings_;
-    const std::function<school::Milliseconds()> clock_;
-    const std::string name_;
+    const std::unique_ptr<WorkSource> source_;
+    const std::chrono::milliseconds pause_, renewal_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::atomic<bool> ends_{false};

@@ -36,6 +36,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     twice(text, [](std::string_view t) { return wire::receivedFrom(t); });
     twice(text, [](std::string_view t) { return wire::statusFrom(t); });
     twice(text, [](std::string_view t) { return wire::tasksFrom(t); });
+    twice(text, [](std::string_view t) { return wire::workFrom(t); });
     twice(text, [](std::string_view t) { return wire::watchedFrom(t); });
     // What a station shows: read again it is the same, and a picture's size is one.
     (void)handpiece::fuzz::readText(data, size, [](std::string_view one) {

@@ -177,7 +177,7 @@ class Sandboxed : public testing::Test {
         p.attempt.sessionHashes = {assessment::workHash(session)};
         return p;
     }
-    static Proof proved(const fs::path& session) { return prove(told(session), {{session}, exercise()}, kRubric, {}); }
+    static Proof proved(const fs::path& session) { return prove(questionOf(told(session), kRubric, {}), {{session}, exercise()}); }
     /// Of another's settings, and with a tooth of so many bytes.
     static void forged(const std::string& settings, std::size_t toothBytes = 100) {
         session::SessionInfo info = session::SessionReader(honest()).info();
@@ -342,13 +342,13 @@ TEST_F(Sandboxed, WhatIsWrongWithTheSchoolsOwnIsNoFaultOfTheWork) {
     const fs::path broken = folder_->path() / "broken.handpiece";
     write(broken, "no exercise");
     EXPECT_EQ(test::errorFrom([&] {
-                  (void)prove(told(honest()), {{honest()}, broken}, kRubric, {});
+                  (void)prove(questionOf(told(honest()), kRubric, {}), {{honest()}, broken});
               })
                   .value()
                   .id(),
               "sandbox-exercise");
     EXPECT_EQ(test::errorFrom([&] {
-                  (void)prove(told(honest()), {{honest()}, exercise()}, "no rubric", {});
+                  (void)prove(questionOf(told(honest()), "no rubric", {}), {{honest()}, exercise()});
               })
                   .value()
                   .id(),

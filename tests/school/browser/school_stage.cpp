@@ -31,7 +31,7 @@ void fill(const fs::path& data, Chair& chair) {
              {"s017", "as1"}, {"s017", "as2"}, {"s017", ""}, {"s018", "as1"}})
         (void)pushWork(books, chair, student == "s018" ? others : session(), student, assignment);
     const std::vector<std::string> sittings = holdExam(books, data, {{"s017", session()}, {"s018", others}});
-    Worker worker({data}, systemClock());
+    Worker worker(worksOf({data}, systemClock()));
     while (worker.workOnce()) {
     }
     decideExam(books, sittings.at(0), "confirm", "t1", "fail", "The floor is too deep <b>");

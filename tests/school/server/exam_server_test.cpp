@@ -146,7 +146,7 @@ class ExamTest : public school_server::SchoolTest {
         return attempt && open.missingFiles(attempt->station).empty();
     }
     void prove() const {
-        school_server::Worker worker({data()}, school_server::systemClock());
+        school_server::Worker worker(school_server::worksOf({data()}, school_server::systemClock()));
         while (worker.workOnce()) {
         }
     }

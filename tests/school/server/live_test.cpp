@@ -465,7 +465,7 @@ TEST_F(LiveTest, AReviewIsMadeOnceForWhoMaySeeTheAttempt) {
     }
     (void)chair.push(enrolment);
     ASSERT_EQ(books().attempt(practice)->assignment, "as1");
-    Worker worker({data(), databaseOf(data())}, systemClock());
+    Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
     while (worker.workOnce()) {
     }
     const std::string path = "/attempts/" + practice + "/review";

@@ -68,7 +68,7 @@ class PagesTest : public SchoolTest {
         chair_ = std::make_unique<Chair>();
         assigned_ = pushWork(open, *chair_, session(), "s017", "as1");
         practice_ = pushWork(open, *chair_, session(), "s017", "");
-        Worker worker({data(), databaseOf(data())}, systemClock());
+        Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
         while (worker.workOnce()) {
         }
     }

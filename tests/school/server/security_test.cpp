@@ -69,11 +69,13 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
         {"nobody", ""}, {"student", "s018"}, {"teacher", "t1"}, {"examiner", "e1"}, {"administrator", "a1"}};
     std::string table =
         "| route | nobody | student | teacher | examiner | administrator | station | exam station "
-        "|\n|---|---|---|---|---|---|---|---|\n";
-    const std::string key(64, 'd'), examKey(64, 'e'), examStation(32, 'e');
+        "| worker |\n|---|---|---|---|---|---|---|---|---|\n";
+    const std::string key(64, 'd'), examKey(64, 'e'), examStation(32, 'e'), workerKey(64, 'f');
     open.offerCode("a-code-for-exams", "exam room", systemClock()() + 1'000'000, act, "exam");
     ASSERT_TRUE(open.enrolStation("a-code-for-exams", examStation, examKey, systemClock()()));
     open.releaseForExams(examStation, act);
+    open.offerCode("a-code-for-a-worker", "large machine", systemClock()() + 1'000'000, act, "worker");
+    ASSERT_TRUE(open.enrolStation("a-code-for-a-worker", std::string(32, 'f'), workerKey, systemClock()()));
     const std::vector<Route> routes = Server::routes();
     std::vector<std::string> lines(routes.size());
     const auto tryRoute = [&](const Route& route) {
@@ -94,7 +96,7 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
             line += fmt::format(" {} |", inTable(route, ask(http, route, path, headers, form)));
         }
         httplib::Client http(school.address());
-        for (const std::string& its : {key, examKey})
+        for (const std::string& its : {key, examKey, workerKey})
             line += fmt::format(
                 " {} |", inTable(route, ask(http, route, path,
                                             {{"Handpiece-Protocol", "1"}, {"Authorization", "Bearer " + its}}, {})));
@@ -153,7 +155,7 @@ TEST_F(SecurityTest, WhatIsInjectedIsTextOrRefusedAndNeverAFault) {
     httplib::Client http(school.address());
     std::size_t asked = 0;
     for (const Route& route : Server::routes()) {
-        if (route.pattern == "/logout" || route.caller == Caller::station) continue;
+        if (route.pattern == "/logout" || route.caller == Caller::station || route.caller == Caller::worker) continue;
         for (const std::string& string : strings) {
             httplib::Headers headers{{"Cookie", "handpiece=" + token}, {"Handpiece-Protocol", "1"}};
             httplib::Params form{{"token", school::requestTokenOf(token)}};

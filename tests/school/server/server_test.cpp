@@ -34,7 +34,7 @@ TEST_F(SchoolTest, WorkIsPushedProvenAndScored) {
     EXPECT_EQ(chair.push(forgot).bytes, 0u);
     EXPECT_EQ(books().attemptsOf("s017").size(), 1u);
 
-    Worker worker({data(), databaseOf(data())}, systemClock());
+    Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
     EXPECT_TRUE(worker.workOnce());
     EXPECT_FALSE(worker.workOnce()) << "once";
     const std::vector<school::Score> scores = scoresOf(attempt);
@@ -64,7 +64,7 @@ TEST_F(SchoolTest, ABoastAndAForeignSessionAreFound) {
         core::writeFile(chair.home() / "sessions" / "two.h5", bytes);
     }
     (void)chair.push(enrolment);
-    Worker worker({data(), databaseOf(data())}, systemClock());
+    Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
     while (worker.workOnce()) {
     }
     EXPECT_THAT(scoresOf(boast).front().reason, HasSubstr("its station said 99 of 100"));
@@ -80,7 +80,7 @@ TEST_F(SchoolTest, OnePersonsSessionIsNotAnothersWork) {
         open.add(std::span(&other, 1), {"server", 1});
         open.offerCode("ABC-DEF-GHJ-KMP", "chair 2", 4'000'000'000'000, {"server", 1});
     }
-    Worker worker({data(), databaseOf(data())}, systemClock());
+    Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
     Chair own, borrowed;
     Enrolment mine = school_station::enrol(school.address(), kCode, "s017");
     const std::string first = own.finish(session(), "one.h5");
@@ -270,7 +270,7 @@ TEST_F(SchoolTest, StrangersGetNothing) {
     School school(data());
     httplib::Client http(school.address());
     for (const Route& route : Server::routes()) {
-        if (route.caller != Caller::station) continue;
+        if (route.caller != Caller::station && route.caller != Caller::worker) continue;
         const std::string path = pathOf(route.pattern) + "?bytes=1&offset=0";
         for (const httplib::Headers& headers :
              {httplib::Headers{{"Handpiece-Protocol", "1"}},

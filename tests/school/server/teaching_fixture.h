@@ -78,7 +78,7 @@ class TeachingTest : public SchoolTest {
         (void)open.append({station_, school::sha256Of(session()), bytes.size()}, 0, bytes, 3);
         // The first is real work; of the others the server's score is made up here, each by the rubric.
         attempts_.push_back(push(open, 0, true));
-        Worker worker({data(), databaseOf(data())}, systemClock());
+        Worker worker(worksOf({data(), databaseOf(data())}, systemClock()));
         while (worker.workOnce()) {
         }
         const std::vector<school::Score> scores = open.scoresOf(attempts_.front());

@@ -93,6 +93,10 @@ class Said {
     Json json_;
 };
 
+std::string dumped(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 sandbox::Answer asked(const char* work, Json request, const Files& files, const sandbox::Bounds& bounds,
                       const core::Progress& progress = {}, std::span<const fs::path> besides = {}) {
     std::vector<fs::path> readable = files.sessions;
@@ -109,7 +113,7 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
         readable.push_back(core::wholePath(one));
     request["work"] = work, request["language"] = config::words().language();
     request["sessions"] = sessions, request["exercise"] = exercise.string();
-    return sandbox::ask(request.dump(-1, ' ', false, Json::error_handler_t::replace), readable, bounds, progress);
+    return sandbox::ask(dumped(request), readable, bounds, progress);
 }
 
 /// A recording of half an hour has some 30 MB [R] (docs/session-format.md) and is cut again in minutes.
@@ -131,6 +135,7 @@ constexpr sandbox::Bounds kPage{.cpuS = 120.0, .wallS = 120.0};
 school::Score refusedFor(const core::Error& e) {
     school::Score s;
     s.state = "refused", s.passed = "teacher", s.reason = e.problem();
+    s.engine = core::kEngineRevision;
     return s;
 }
 
@@ -177,57 +182,83 @@ Exercise exerciseFrom(const Said& said) {
 
 }  // namespace
 
-Proof prove(const school::PushedAttempt& pushed, const Files& files, const std::string& rubric,
-            const std::optional<ExamNotes>& exam, const core::Progress& progress) {
+std::string questionOf(const school::PushedAttempt& pushed, const std::string& rubric,
+                       const std::optional<ExamNotes>& exam) {
     const school::Attempt& a = pushed.attempt;
-    Json request{{"rubric", rubric},
-                 {"attempt",
-                  {{"id", a.id},
-                   {"exercise_hash", a.exerciseHash},
-                   {"rubric_hash", a.rubricHash},
-                   {"session_hashes", a.sessionHashes},
-                   {"device", a.device},
-                   {"score", a.score},
-                   {"max_score", a.maxScore},
-                   {"passed", a.passed}}}};
-    if (exam) request["exam"] = {{"locked", exam->locked}, {"entries", exam->entries}};
+    Json question{{"rubric", rubric},
+                  {"attempt",
+                   {{"id", a.id},
+                    {"exercise_hash", a.exerciseHash},
+                    {"rubric_hash", a.rubricHash},
+                    {"session_hashes", a.sessionHashes},
+                    {"device", a.device},
+                    {"score", a.score},
+                    {"max_score", a.maxScore},
+                    {"passed", a.passed}}}};
+    if (exam) question["exam"] = {{"locked", exam->locked}, {"entries", exam->entries}};
+    return dumped(question);
+}
+
+std::string toJson(const Proof& proof) {
+    const school::Score& s = proof.score;
+    return dumped({{"state", s.state},
+                   {"reason", s.reason},
+                   {"state_hash", s.stateHash},
+                   {"score", s.score},
+                   {"max_score", s.maxScore},
+                   {"whole_score", s.wholeScore},
+                   {"passed", s.passed},
+                   {"borderline", s.borderline},
+                   {"result", s.result},
+                   {"contents", proof.contents},
+                   {"sketches", proof.sketches},
+                   {"doubts", proof.doubts}});
+}
+
+Proof proofFrom(const std::string& json, std::size_t sessions) {
+    const Said said(json);
     Proof proof;
+    school::Score& s = proof.score;
+    s.state = said.text("state", 16), s.reason = said.text("reason", kMostWords);
+    s.passed = said.text("passed", 16), s.stateHash = said.text("state_hash", 64);
+    s.score = said.number("score"), s.maxScore = said.number("max_score");
+    s.wholeScore = said.number("whole_score"), s.borderline = said.yes("borderline");
+    s.result = said.text("result", kMostResult);
+    s.engine = core::kEngineRevision;
+    const bool isKind = (s.state == "proven" || s.state == "refused") &&
+                        (s.passed == "yes" || s.passed == "no" || s.passed == "teacher") &&
+                        (s.state == "refused" || !s.result.empty());
+    if (!isKind) throw noAnswer();
+    if (!s.result.empty()) (void)assessment::parseResult(s.result, "what was found");
+    proof.contents = said.texts("contents", sessions, 64);
+    if (proof.contents.size() != sessions) throw noAnswer();
+    for (const std::string& one : proof.contents)
+        if (!one.empty() && !isHash(one, 64)) throw noAnswer();
+    const Json& sketches = said.at("sketches");
+    if (!sketches.is_array() || sketches.size() != sessions) throw noAnswer();
+    for (const Json& one : sketches) {
+        proof.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
+        for (const std::string& hash : proof.sketches.back())
+            if (!isHash(hash, 16)) throw noAnswer();
+    }
+    proof.doubts = said.texts("doubts", 1000, 1000);
+    return proof;
+}
+
+Proof prove(const std::string& question, const Files& files, const core::Progress& progress) {
+    const std::size_t sessions = files.sessions.size();
+    Json asks = config::outsideJson<Json>(question);
+    if (!asks.is_object()) throw noAnswer();
+    const bool isExam = asks.contains("exam");
     try {
-        const sandbox::Answer answer = asked("prove", std::move(request), files, boundsFor(files), progress);
-        const Said said(answer.text);
-        school::Score& s = proof.score;
-        s.state = said.text("state", 16), s.reason = said.text("reason", kMostWords);
-        s.passed = said.text("passed", 16), s.stateHash = said.text("state_hash", 64);
-        s.score = said.number("score"), s.maxScore = said.number("max_score");
-        s.wholeScore = said.number("whole_score"), s.borderline = said.yes("borderline");
-        s.result = said.text("result", kMostResult);
-        const bool isKind = (s.state == "proven" || s.state == "refused") &&
-                            (s.passed == "yes" || s.passed == "no" || s.passed == "teacher") &&
-                            (s.state == "refused" || !s.result.empty());
-        if (!isKind) throw noAnswer();
-        if (!s.result.empty()) (void)assessment::parseResult(s.result, "what was found");
-        proof.contents = said.texts("contents", files.sessions.size(), 64);
-        if (proof.contents.size() != files.sessions.size()) throw noAnswer();
-        for (const std::string& one : proof.contents)
-            if (!one.empty() && !isHash(one, 64)) throw noAnswer();
-        const Json& sketches = said.at("sketches");
-        if (!sketches.is_array() || sketches.size() != files.sessions.size()) throw noAnswer();
-        for (const Json& one : sketches) {
-            proof.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
-            for (const std::string& hash : proof.sketches.back())
-                if (!isHash(hash, 16)) throw noAnswer();
-        }
-        proof.doubts = said.texts("doubts", 1000, 1000);
+        return proofFrom(asked("prove", std::move(asks), files, boundsFor(files), progress).text, sessions);
     } catch (const core::Error& e) {
         if (!sandbox::isFault(e) || e.id() == "sandbox-exercise") throw;
-        proof = {refusedFor(e),
-                 std::vector<std::string>(files.sessions.size()),
-                 std::vector<std::vector<std::string>>(files.sessions.size()),
-                 {}};
-        if (exam) proof.doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
+        Proof proof{refusedFor(e), std::vector<std::string>(sessions), std::vector<std::vector<std::string>>(sessions),
+                    {}};
+        if (isExam) proof.doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
+        return proof;
     }
-    proof.score.attempt = a.id, proof.score.engine = core::kEngineRevision;
-    return proof;
 }
 
 report::Review review(const Files& files, const std::string& title, const std::string& result,

@@ -43,11 +43,17 @@ struct Proof {
     std::vector<std::vector<std::string>> sketches{};  ///< by session: proving::motionSketch()
     std::vector<std::string> doubts{};                 ///< of its exam, as proving::recordingDoubts()
 };
-/// As proving::prove(), of an attempt that was pushed; `rubric` is its text. Of `score`, `attempt` and `rubric` are the
-/// caller's. Never throws for a session that cannot be read: it is refused, as one is that ends its reader. What is
-/// wrong with exercise or rubric throws "sandbox-exercise".
-[[nodiscard]] Proof prove(const school::PushedAttempt& attempt, const Files& files, const std::string& rubric,
-                          const std::optional<ExamNotes>& exam, const core::Progress& progress = {});
+/// What is asked of an attempt that was pushed, but for its files: JSON, which may go to another machine. It names
+/// nobody. `rubric` is a text.
+[[nodiscard]] std::string questionOf(const school::PushedAttempt& attempt, const std::string& rubric,
+                                     const std::optional<ExamNotes>& exam);
+/// As proving::prove(). Of `score`, attempt, rubric and campaign are the caller's. Never throws for a session that
+/// cannot be read: it is refused, as one is that ends its reader. What is wrong with exercise or rubric throws
+/// "sandbox-exercise".
+[[nodiscard]] Proof prove(const std::string& question, const Files& files, const core::Progress& progress = {});
+/// For the way between two machines. Throws core::Error for what is no proof of so many sessions.
+[[nodiscard]] std::string toJson(const Proof& proof);
+[[nodiscard]] Proof proofFrom(const std::string& json, std::size_t sessions);
 
 /// What a review page shows. `result` and `rubric` are texts of the books; empty: the work is shown alone.
 [[nodiscard]] report::Review review(const Files& files, const std::string& title, const std::string& result,

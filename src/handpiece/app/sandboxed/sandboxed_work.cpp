@@ -90,29 +90,18 @@ Answer prove(const Json& asked, const core::Progress& progress) {
         return read;
     });
     const std::vector<std::filesystem::path> sessions = sessionsOf(asked);
-    Json contents = Json::array(), sketches = Json::array();
+    Proof proof;
     for (const std::filesystem::path& one : sessions)
-        contents.push_back(contentOf(one)), sketches.push_back(sketchOf(one));
+        proof.contents.push_back(contentOf(one)), proof.sketches.push_back(sketchOf(one));
     school::PushedAttempt pushed;
     school::Attempt& a = pushed.attempt;
     const Json& of = asked.at("attempt");
     a.id = of.at("id"), a.exerciseHash = of.at("exercise_hash"), a.rubricHash = of.at("rubric_hash");
     a.sessionHashes = of.at("session_hashes").get<std::vector<std::string>>();
     a.device = of.at("device"), a.score = of.at("score"), a.maxScore = of.at("max_score"), a.passed = of.at("passed");
-    const school::Score s = proving::prove(pushed, sessions, task, rubric, progress);
-    const Json doubts = asked.contains("exam") ? Json(doubtsOf(asked.at("exam"), sessions)) : Json::array();
-    return {dumped({{"state", s.state},
-                    {"reason", s.reason},
-                    {"state_hash", s.stateHash},
-                    {"score", s.score},
-                    {"max_score", s.maxScore},
-                    {"whole_score", s.wholeScore},
-                    {"passed", s.passed},
-                    {"borderline", s.borderline},
-                    {"result", s.result},
-                    {"contents", contents},
-                    {"sketches", sketches},
-                    {"doubts", doubts}})};
+    proof.score = proving::prove(pushed, sessions, task, rubric, progress);
+    if (asked.contains("exam")) proof.doubts = doubtsOf(asked.at("exam"), sessions);
+    return {toJson(proof)};
 }
 
 Answer review(const Json& asked, const core::Progress& progress) {

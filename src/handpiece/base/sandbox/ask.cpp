@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -19,6 +20,7 @@
 
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/sandbox/frames.h"
+#include "handpiece/base/sandbox/hearing.h"
 #include "handpiece/base/sandbox/sandbox.h"
 
 namespace handpiece::sandbox {
@@ -31,11 +33,6 @@ core::Error cannotStart(const std::string& why) {
     return core::Error(fmt::format("nothing from outside is read here: {}", why), "handpiece-sandbox",
                        "give it a kernel with Landlock and seccomp (Linux 5.13 or later), and the whole installation")
         .as("sandbox-start", {why});
-}
-core::Error died(const std::string& how) {
-    return core::Error(fmt::format("reading it ended the program that reads it ({})", how), "",
-                       "it is damaged, or was made to do this: record it again")
-        .as("sandbox-died", {how});
 }
 
 class Descriptor {
@@ -185,104 +182,6 @@ class Child {
     Pipe answers_, complaints_;
     pid_t id_ = -1;
     std::string complaint_;
-};
-
-/// UTF-8 without control characters, as pages and databases take it.
-std::string plain(std::string_view text) {
-    std::string out;
-    for (std::size_t i = 0; i < text.size();) {
-        const auto at = [&](std::size_t k) { return k < text.size() ? static_cast<unsigned char>(text[k]) : 0u; };
-        const unsigned first = at(i), second = at(i + 1);
-        std::size_t length = first < 0x80                    ? 1
-                             : first >= 0xc2 && first < 0xe0 ? 2
-                             : first >= 0xe0 && first < 0xf0 ? 3
-                                                             : 4;
-        bool isGood = first < 0x80 || (first >= 0xc2 && first < 0xf5);
-        for (std::size_t k = 1; isGood && k < length; ++k)
-            isGood = (at(i + k) & 0xc0u) == 0x80u;
-        // Too long a form of a small number, halves of pairs, beyond the last.
-        if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
-            (first == 0xf4 && second >= 0x90))
-            isGood = false;
-        if (!isGood) length = 1;
-        if (isGood && first >= ' ' && first != 0x7f)
-            out += text.substr(i, length);
-        else
-            out += isGood ? ' ' : '?';
-        i += length;
-    }
-    return out;
-}
-
-/// What the child sends, as it comes.
-class Hearing {
-  public:
-    Hearing(std::size_t mostBytes) : most_(mostBytes) {}
-    /// Takes whole pieces off the front. Throws core::Error: what the child threw, or that this is no answer.
-    void hear(std::string& come) {
-        std::size_t at = 0;
-        while (!isWhole && come.size() - at >= kHeadBytes) {
-            const auto kind = static_cast<Frame>(come[at]);
-            const std::size_t size = Taker(std::string_view(come).substr(at + 1)).number(4);
-            if (size > mostOf(kind)) throw died("it sent what is no answer");
-            if (come.size() - at - kHeadBytes < size) break;
-            take(kind, std::string_view(come).substr(at + kHeadBytes, size));
-            at += kHeadBytes + size;
-        }
-        come.erase(0, at);
-    }
-
-    bool isReady = false, isWhole = false;
-    double progress = 0.0;
-    Answer answer;
-
-  private:
-    std::size_t mostOf(Frame kind) const {
-        switch (kind) {
-            case Frame::ready:
-            case Frame::end:
-                return 0;
-            case Frame::progress:
-                return 8;
-            case Frame::text:
-            case Frame::bytes:
-                return most_;
-            case Frame::error:
-                return kMostErrorBytes;
-        }
-        throw died("it sent what is no answer");
-    }
-    void take(Frame kind, std::string_view piece) {
-        if (isReady == (kind == Frame::ready)) throw died("it sent what is no answer");
-        if (kind == Frame::ready) isReady = true;
-        if (kind == Frame::progress) {
-            int thousandths = 0;
-            (void)std::from_chars(piece.data(), piece.data() + piece.size(), thousandths);
-            progress = 1e-3 * thousandths;
-        }
-        if (kind == Frame::text) answer.text = piece;
-        if (kind == Frame::bytes) {
-            const auto* data = reinterpret_cast<const std::byte*>(piece.data());
-            answer.bytes.assign(data, data + piece.size());
-        }
-        if (kind == Frame::end) isWhole = true;
-        if (kind == Frame::error) fail(piece);
-    }
-    [[noreturn]] static void fail(std::string_view piece) {
-        Taker taker(piece);
-        const std::string id = plain(taker.text()), problem = plain(taker.text()), where = plain(taker.text()),
-                          remedy = plain(taker.text());
-        std::vector<std::string> arguments;
-        while (taker.isWhole && !taker.isEmpty())
-            arguments.push_back(plain(taker.text()));
-        // Its own troubles are told by who started it alone.
-        if (!taker.isWhole || id == "sandbox-start" || id == "sandbox-killed" || id == "cancelled" ||
-            problem == "cancelled")
-            throw died("it sent what is no answer");
-        throw core::Error(problem, where, remedy).as(id, arguments);
-    }
-
-    const std::size_t most_;
 };
 
 }  // namespace

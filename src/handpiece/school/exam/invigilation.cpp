@@ -42,6 +42,16 @@ fs::path entryFile(const fs::path& folder, std::int64_t number) {
     return folder / "chain" / fmt::format("{:010}.txt", number);
 }
 
+core::Error otherExercise(const std::string& where) {
+    return core::Error("the exam's exercise is not the one that its pack names", where,
+                       "fetch it again from the school's server")
+        .as("exam-exercise-other");
+}
+/// Wrong codes are counted for each who types them, and for each account that they come from.
+std::string guesserOf(const std::string& what, const std::string& from) {
+    return from.empty() ? what : what + " at " + from;
+}
+
 }  // namespace
 
 StationIdentity stationIn(const fs::path& folder) {
@@ -73,9 +83,7 @@ bool hasExercise(const fs::path& folder, const Pack& pack) {
 void openExercise(const fs::path& folder, const Pack& pack, const std::string& typedCode) {
     const std::vector<std::byte> bytes = unsealed(core::readFile(sealedFile(folder, pack)), pack.exam, typedCode);
     if (school::sha256({reinterpret_cast<const char*>(bytes.data()), bytes.size()}) != pack.file)
-        throw core::Error("the exam's exercise is not the one that its pack names", pack.exam,
-                          "fetch it again from the school's server")
-            .as("exam-exercise-other");
+        throw otherExercise(pack.exam);
     core::writeFile(exerciseFile(folder, pack.file), bytes, {.ownerOnly = true});
 }
 
@@ -94,15 +102,12 @@ Pack installPack(const fs::path& folder, const Signed& signedPack, const fs::pat
     if (!exercise.empty()) {
         const bool isSealed = pack.format != 1;
         // What is sealed is looked at when it is opened.
-        if (const std::string hash = isSealed ? pack.file : school::sha256Of(exercise); hash != pack.file)
-            throw core::Error("the exam's exercise is not the one that its pack names", exercise.string(),
-                              "fetch it again from the school's server")
-                .as("exam-exercise-other", {hash, pack.file});
+        if (!isSealed && school::sha256Of(exercise) != pack.file) throw otherExercise(exercise.string());
         core::prepareOutputFolder(folder / "exercises", true);
         fs::rename(exercise, isSealed ? sealedFile(folder, pack) : exerciseFile(folder, pack.file));
     } else if (!hasExercise(folder, pack)) {
         throw core::Error("the exam's exercise is not here", pack.exam, "fetch it from the school's server")
-            .as("exam-exercise-other", {"", pack.file});
+            .as("exam-exercise-other");
     }
     core::prepareOutputFolder(folder / "packs", true);
     core::prepareOutputFolder(in, true);
@@ -131,9 +136,7 @@ std::vector<Installed> packsIn(const fs::path& folder, std::vector<std::string>&
                 one.pack.format != 1 && !core::isThere(one.exercise) && core::isThere(sealedFile(folder, one.pack));
             // What was written there since is no exam's exercise.
             if (!one.isSealed && (!core::isThere(one.exercise) || school::sha256Of(one.exercise) != one.pack.file))
-                throw core::Error("the exam's exercise is not the one that its pack names", one.exercise.string(),
-                                  "fetch it again from the school's server")
-                    .as("exam-exercise-other");
+                throw otherExercise(one.exercise.string());
             all.push_back(std::move(one));
         } catch (const core::Error& e) {
             problems.emplace_back(e.what());
@@ -201,7 +204,7 @@ void Invigilation::requirePatience(const std::string& who, Milliseconds now) {
 
 std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& candidate, const std::string& person,
                                              const std::string& code, Milliseconds now, const std::string& from) {
-    const std::string guesser = from.empty() ? person : person + " at " + from;
+    const std::string guesser = guesserOf(person, from);
     requirePatience(guesser, now);
     const std::string typed = school::typedStationCode(code);
     const auto found = std::find_if(pack.invigilators.begin(), pack.invigilators.end(),
@@ -226,7 +229,7 @@ std::string Invigilation::requireInvigilator(const Pack& pack, const Candidate& 
 }
 
 void Invigilation::open(const std::string& typedCode, Milliseconds now, const std::string& from) {
-    const std::string guesser = from.empty() ? "the exercise's seal" : "the exercise's seal at " + from;
+    const std::string guesser = guesserOf("the exercise's seal", from);
     requirePatience(guesser, now);
     const std::string typed = school::typedStationCode(typedCode);
     std::vector<std::string> problems;

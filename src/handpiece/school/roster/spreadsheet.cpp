@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/utf8.h"
 
 namespace handpiece::school {
 namespace {
@@ -51,27 +52,10 @@ std::string fromUtf16(std::string_view bytes, bool isBigEndian, const std::strin
     return text;
 }
 
-/// How many bytes the character at `i` has; 0: none of UTF-8.
-std::size_t lengthAt(std::string_view text, std::size_t i) {
-    const auto byte = [&](std::size_t at) { return at < text.size() ? static_cast<unsigned char>(text[at]) : 0u; };
-    const unsigned first = byte(i), second = byte(i + 1);
-    const std::size_t length = first < 0x80                    ? 1
-                               : first >= 0xc2 && first < 0xe0 ? 2
-                               : first >= 0xe0 && first < 0xf0 ? 3
-                               : first >= 0xf0 && first < 0xf5 ? 4
-                                                               : 0;
-    for (std::size_t k = 1; k < length; ++k)
-        if ((byte(i + k) & 0xc0u) != 0x80u) return 0;
-    // Too long a form of a small number, halves of pairs, beyond the last.
-    const bool isWrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
-                         (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
-    return isWrong ? 0 : length;
-}
-
 void requireUtf8(std::string_view text, const std::string& where) {
     std::size_t line = 1;
     for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = lengthAt(text, i);
+        const std::size_t length = core::utf8Length(text.substr(i));
         if (length == 0)
             refuse(where, line, fmt::format("byte {:02x} is no UTF-8", static_cast<unsigned char>(text[i])), kSaveAnew);
         if (text[i] == '\n') ++line;

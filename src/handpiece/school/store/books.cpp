@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/utf8.h"
 #include "handpiece/school/store/books_state.h"
 #include "handpiece/school/store/database_postgres.h"
 #include "handpiece/school/store/database_sqlite.h"
@@ -94,26 +95,12 @@ core::Error invalid(const std::string& field, const std::string& value, const st
 }
 
 void requireText(std::string_view text) {
-    const auto at = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     for (std::size_t i = 0; i < text.size();) {
-        const unsigned first = at(i);
-        const unsigned more = first < 0x80                    ? 0u
-                              : first >= 0xc2 && first < 0xe0 ? 1u
-                              : first >= 0xe0 && first < 0xf0 ? 2u
-                              : first >= 0xf0 && first < 0xf5 ? 3u
-                                                              : 9u;
-        bool isGood = first != 0 && more != 9u;
-        for (unsigned k = 1; isGood && k <= more; ++k)
-            isGood = (at(i + k) & 0xc0u) == 0x80u;
-        // Too long a form of a small number, halves of pairs, beyond the last.
-        const unsigned second = at(i + 1);
-        if ((first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) || (first == 0xf0 && second < 0x90) ||
-            (first == 0xf4 && second >= 0x90))
-            isGood = false;
-        if (!isGood)
+        const std::size_t length = text[i] == '\0' ? 0 : core::utf8Length(text.substr(i));
+        if (length == 0)
             throw core::Error(fmt::format("byte {} of a text is not UTF-8, or zero", i), {}, "send it as UTF-8")
                 .as("books-invalid", {"text"});
-        i += more + 1;
+        i += length;
     }
 }
 
@@ -528,7 +515,10 @@ Station stationOf(const Statement& row) {
 
 void Books::offerCode(const std::string& code, const std::string& name, Milliseconds expires, const Act& act,
                       const std::string& kind, const std::string& person) {
-    if (kind != "practice" && kind != "exam") throw invalid("kind of station", kind, "write practice or exam");
+    if (kind != "practice" && kind != "exam" && kind != "worker")
+        throw invalid("kind of station", kind, "write practice, exam or worker");
+    if (kind != "practice" && !person.empty())
+        throw invalid("kind of a person's own station", kind, "write practice");
     if (code.size() < 8) throw invalid("code of a station", code, "use 8 characters or more, by chance");
     Transaction transaction(*state_->database);
     if (!person.empty()) state_->requirePerson(person);
@@ -536,7 +526,7 @@ void Books::offerCode(const std::string& code, const std::string& name, Millisec
                      "$4, $5) ON CONFLICT DO NOTHING RETURNING hash",
                      sha256(code), name, expires, kind, person))
         throw duplicate(*state_->database, "code of a station", name);
-    state_->note(act, kind == "exam" ? "offer exam station code" : "offer station code", name);
+    state_->note(act, kind == "practice" ? "offer station code" : fmt::format("offer {} station code", kind), name);
     transaction.commit();
 }
 

@@ -72,7 +72,7 @@ struct Assignment {
 struct Station {
     std::string id{}, name{};
     Milliseconds enrolled = 0, revoked = 0;
-    std::string kind = "practice";  ///< or "exam": enrolled by a code of that kind
+    std::string kind = "practice";  ///< "exam", "worker": enrolled by a code of that kind
     Milliseconds released = 0;      ///< for exams, by an administrator
     std::string person{};           ///< who showed that it is theirs, and whose work alone it sends; empty: anybody's
     Milliseconds ends = 0;          ///< of such a one: until when, unless they show it again; 0: it does not
@@ -290,6 +290,9 @@ class Books {
     [[nodiscard]] Milliseconds sharedTime(Milliseconds own) const;
     /// The one that waits longest, or whose worker did not come back in time.
     std::optional<Job> takeJob(const std::string& worker, Milliseconds now, Milliseconds lease);
+    /// What this worker has in hand; nothing where that turn is over. Its lease may have run out (`leaseUntil`) without
+    /// another having taken it.
+    [[nodiscard]] std::optional<Job> lent(const std::string& worker, std::int64_t number, std::int64_t turn) const;
     /// False: it is another's by now, or done; drop it.
     bool renew(Job& job, Milliseconds now, Milliseconds lease);
     /// Score and end of the job, once: false: another was quicker, and nothing was stored.

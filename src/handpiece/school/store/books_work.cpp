@@ -467,6 +467,15 @@ std::optional<Job> Books::takeJob(const std::string& worker, Milliseconds now, M
     return job;
 }
 
+std::optional<Job> Books::lent(const std::string& worker, std::int64_t number, std::int64_t turn) const {
+    Statement row = state_->ask(
+        "SELECT campaign, attempt, rubric, lease_until FROM jobs WHERE number = $1 AND turn = $2 AND worker = $3 AND "
+        "state = 'taken'",
+        number, turn, worker);
+    if (!row.next()) return {};
+    return Job{number, turn, row.text(0), row.text(1), row.text(2), row.integer(3)};
+}
+
 namespace {
 /// Still this lending of this job.
 constexpr const char* kStillMine =

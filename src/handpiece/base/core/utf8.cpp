@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "handpiece/base/core/utf8.h"
+
+namespace handpiece::core {
+
+std::size_t utf8Length(std::string_view text) noexcept {
+    const auto byte = [text](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+    if (text.empty()) return 0;
+    const unsigned first = byte(0), second = byte(1);
+    const std::size_t length = first < 0x80   ? 1
+                               : first < 0xc2 ? 0
+                               : first < 0xe0 ? 2
+                               : first < 0xf0 ? 3
+                               : first < 0xf5 ? 4
+                                              : 0;
+    for (std::size_t i = 1; i < length; ++i)
+        if ((byte(i) & 0xc0u) != 0x80u) return 0;
+    // Too long a form of a small number, halves of pairs, beyond the last.
+    const bool isWrong = (first == 0xe0 && second < 0xa0) || (first == 0xed && second >= 0xa0) ||
+                         (first == 0xf0 && second < 0x90) || (first == 0xf4 && second >= 0x90);
+    return isWrong ? 0 : length;
+}
+
+}  // namespace handpiece::core

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Text as pages and databases take it.
+
+#include <cstddef>
+#include <string_view>
+
+namespace handpiece::core {
+
+/// Bytes of the UTF-8 character that begins the text (RFC 3629); 0: none does.
+[[nodiscard]] std::size_t utf8Length(std::string_view text) noexcept;
+
+}  // namespace handpiece::core

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "handpiece/base/core/engine_revision.h"
+#include "handpiece/school/people/secret.h"
 #include "school/line.h"
 #include "school/remote_work.h"
 #include "school/server/school_fixture.h"
@@ -23,18 +24,16 @@ class WorkersTest : public SchoolTest {
   protected:
     /// A machine with a key of its own.
     [[nodiscard]] Enrolment machine(const School& school, const std::string& name = "large machine") const {
-        const std::string code = "a-code-for-" + name;
+        const std::string code = school::newStationCode();
         books().offerCode(code, name, 4'000'000'000'000, {"server", 1}, "worker");
         return school_station::enrol(school.address(), code, "", "worker");
     }
-    [[nodiscard]] static std::vector<std::string> pushSome(const School& school, std::size_t count) {
-        static Chair chair;
-        static int named = 0;
+    [[nodiscard]] std::vector<std::string> pushSome(const School& school, std::size_t count) {
         std::vector<std::string> attempts;
         Enrolment enrolment = school_station::enrol(school.address(), kCode, "s017");
         for (std::size_t i = 0; i < count; ++i)
-            attempts.push_back(chair.finish(session(), fmt::format("{}.h5", ++named)));
-        (void)chair.push(enrolment);
+            attempts.push_back(chair_.finish(session(), fmt::format("{}.h5", i)));
+        (void)chair_.push(enrolment);
         return attempts;
     }
     static school_wire::Work take(Line& line) {
@@ -43,6 +42,7 @@ class WorkersTest : public SchoolTest {
     static std::string pathOf(const school_wire::Work& work, const std::string& rest) {
         return fmt::format("/api/v1/works/{}/{}/{}", work.number, work.turn, rest);
     }
+    Chair chair_;
 };
 
 TEST_F(WorkersTest, WhatIsCutElsewhereIsWhatIsCutHere) {
@@ -90,20 +90,22 @@ TEST_F(WorkersTest, ItsKeyOpensTheFilesOfWhatItHasInHandAndNothingElse) {
     // Neither is it a station, nor is a station one of these.
     EXPECT_THAT(errorOf([&] { (void)its.get("/api/v1/status"); }), HasSubstr("no more"));
     EXPECT_THAT(errorOf([&] { (void)its.get("/api/v1/exams"); }), HasSubstr("no more"));
-    books().offerCode("a-code-for-a-chair", "chair 2", 4'000'000'000'000, {"server", 1});
-    const Enrolment chair = school_station::enrol(school.address(), "a-code-for-a-chair", "s017");
+    const std::string chairs = school::newStationCode(), practice = school::newStationCode(),
+                      machines = school::newStationCode();
+    books().offerCode(chairs, "chair 2", 4'000'000'000'000, {"server", 1});
+    const Enrolment chair = school_station::enrol(school.address(), chairs, "s017");
     Line station(chair.server, chair.key);
     EXPECT_THAT(errorOf([&] { (void)take(station); }), HasSubstr("no works again"));
     EXPECT_THAT(errorOf([&] { (void)station.get(file); }), HasSubstr("no works again"));
     // A practice code makes no worker, a worker's no station; neither is spent.
-    books().offerCode("a-code-of-practice", "chair 3", 4'000'000'000'000, {"server", 1});
-    books().offerCode("a-code-of-a-worker", "third", 4'000'000'000'000, {"server", 1}, "worker");
-    EXPECT_THAT(errorOf([&] { (void)school_station::enrol(school.address(), "a-code-of-practice", "", "worker"); }),
+    books().offerCode(practice, "chair 3", 4'000'000'000'000, {"server", 1});
+    books().offerCode(machines, "third", 4'000'000'000'000, {"server", 1}, "worker");
+    EXPECT_THAT(errorOf([&] { (void)school_station::enrol(school.address(), practice, "", "worker"); }),
                 HasSubstr("for practice"));
-    EXPECT_THAT(errorOf([&] { (void)school_station::enrol(school.address(), "a-code-of-a-worker", "s017"); }),
+    EXPECT_THAT(errorOf([&] { (void)school_station::enrol(school.address(), machines, "s017"); }),
                 HasSubstr("cuts works again"));
-    EXPECT_THAT(books().offered("a-code-of-practice", 1)->kind, "practice");
-    EXPECT_THAT(books().offered("a-code-of-a-worker", 1)->kind, "worker");
+    EXPECT_THAT(books().offered(practice, 1)->kind, "practice");
+    EXPECT_THAT(books().offered(machines, 1)->kind, "worker");
     // What is no proof of it enters nothing.
     for (const std::string& nonsense :
          {std::string("{}"), std::string("[]"), std::string(R"({"state":"proven"})"), std::string(100'000, '['),

@@ -537,6 +537,45 @@ TEST_P(BooksTest, AStationOfAPersonIsTheirsForATerm) {
     EXPECT_FALSE(books->enrolStation("a second code of s1", id(0x79), std::string(40, 'r'), kNow));
 }
 
+TEST_P(BooksTest, OnePersonFillsNoBooksWithCodesAndNames) {
+    auto books = filled();
+    const auto offer = [&](int i, Milliseconds at) {
+        books->offerCode("code " + id(i), "own", at + kDay, {"s1", at}, "practice", "s1");
+    };
+    for (int i = 0; i < 10; ++i)
+        offer(i, kNow);
+    EXPECT_EQ(test::errorIdOf([&] { offer(10, kNow); }), "books-invalid");
+    ASSERT_TRUE(books->enrolStation("code " + id(0), id(0x77), std::string(40, 'q'), kNow));
+    offer(10, kNow);
+    offer(11, kNow + 2 * kDay);
+    EXPECT_FALSE(books->offered("code " + id(1), kNow)) << "those that ran out are gone";
+    EXPECT_EQ(test::errorIdOf([&] { books->offerCode("a long one", std::string(5000, 'x'), kNow + kDay, kAdmin); }),
+              "books-invalid");
+    EXPECT_EQ(test::errorIdOf([&] { books->rename("s1", std::string(5000, 'x'), "s1", kAdmin); }), "books-invalid");
+}
+
+TEST_P(BooksTest, WhatAWorkerHasInHandIsItsOwn) {
+    auto books = filled();
+    const std::string bytes = "a recording";
+    books->push(attempt(1, {bytes}));
+    EXPECT_TRUE(books->append({kStation, sha256(bytes), bytes.size()}, 0, std::as_bytes(std::span(bytes)), kNow));
+    const auto job = books->takeJob("worker a", kNow, 1000);
+    ASSERT_TRUE(job);
+    const auto lent = books->lent("worker a", job->number, job->turn);
+    ASSERT_TRUE(lent);
+    EXPECT_EQ(lent->attempt, job->attempt);
+    EXPECT_EQ(lent->rubric, job->rubric);
+    EXPECT_EQ(lent->leaseUntil, kNow + 1000);
+    EXPECT_FALSE(books->lent("worker b", job->number, job->turn));
+    EXPECT_FALSE(books->lent("worker a", job->number, job->turn + 1));
+    EXPECT_FALSE(books->lent("worker a", job->number + 1, job->turn));
+    // Its time is over, and another has it.
+    EXPECT_TRUE(books->lent("worker a", job->number, job->turn)) << "until another takes it";
+    ASSERT_TRUE(books->takeJob("worker b", kNow + 1001, 1000));
+    EXPECT_FALSE(books->lent("worker a", job->number, job->turn));
+    EXPECT_TRUE(books->lent("worker b", job->number, job->turn + 1));
+}
+
 TEST_P(BooksTest, NamingAFilesHashDeliversNothing) {
     auto books = filled();
     books->offerCode("another code", "Room 3", kNow + kDay, kAdmin);

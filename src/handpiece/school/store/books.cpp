@@ -41,6 +41,11 @@ std::unique_ptr<Database> openBooksDatabase(const std::filesystem::path& data, c
 
 namespace {
 
+/// What pages show on one line.
+void requireName(const char* field, const std::string& name) {
+    constexpr std::size_t kMostBytes = 1000;
+    if (name.size() > kMostBytes) throw invalid(field, name.substr(0, 40), "say it in 300 characters");
+}
 /// Safe in an address, a table and a file's name.
 void requireCode(const char* field, const std::string& code) {
     const bool isFit = !code.empty() && code.size() <= 64 && std::all_of(code.begin(), code.end(), [](char c) {
@@ -137,6 +142,7 @@ void Books::add(std::span<const Person> people, const Act& act) {
     Transaction transaction(*state_->database);
     for (const Person& person : people) {
         requireCode("code of a person", person.code);
+        requireName("name", person.name), requireName("login", person.login);
         if (!state_->any("INSERT INTO people (code, made, erased) VALUES ($1, $2, 0) "
                          "ON CONFLICT DO NOTHING RETURNING code",
                          person.code, act.at))
@@ -157,6 +163,7 @@ void Books::add(std::span<const Person> people, const Act& act) {
 }
 
 void Books::rename(const std::string& code, const std::string& name, const std::string& login, const Act& act) {
+    requireName("name", name), requireName("login", login);
     Transaction transaction(*state_->database);
     if (state_->any("SELECT 1 FROM identities WHERE login = $1 AND login <> '' AND person <> $2", login, code))
         throw duplicate(*state_->database, "login", login);
@@ -286,6 +293,7 @@ void Books::endLogin(const std::string& token) {
 
 void Books::add(const SchoolClass& c, const Act& act) {
     requireCode("id of a class", c.id);
+    requireName("name of a class", c.name);
     if (c.retentionDays < 0 || c.retentionDays > 36500)
         throw invalid("retention in days", std::to_string(c.retentionDays), "write 0 to 36500");
     Transaction transaction(*state_->database);
@@ -456,6 +464,7 @@ void Books::add(const Pack& p, const Act& act) {
 void Books::add(const Assignment& a, const Act& act) {
     requireCode("id of an assignment", a.id);
     requireOneOf("kind of an assignment", a.kind, kAssignmentKinds);
+    requireName("title of an assignment", a.title);
     if (a.closes < a.opens) throw invalid("time to close", std::to_string(a.closes), "close it after it opens");
     Transaction transaction(*state_->database);
     state_->requireClass(a.schoolClass);
@@ -517,11 +526,18 @@ void Books::offerCode(const std::string& code, const std::string& name, Millisec
                       const std::string& kind, const std::string& person) {
     if (kind != "practice" && kind != "exam" && kind != "worker")
         throw invalid("kind of station", kind, "write practice, exam or worker");
-    if (kind != "practice" && !person.empty())
-        throw invalid("kind of a person's own station", kind, "write practice");
+    if (kind != "practice" && !person.empty()) throw invalid("kind of a person's own station", kind, "write practice");
     if (code.size() < 8) throw invalid("code of a station", code, "use 8 characters or more, by chance");
+    requireName("name of a station", name);
     Transaction transaction(*state_->database);
-    if (!person.empty()) state_->requirePerson(person);
+    if (!person.empty()) {
+        constexpr std::int64_t kMostOpen = 10;
+        state_->requirePerson(person);
+        state_->run("DELETE FROM station_codes WHERE person = $1 AND station = '' AND expires <= $2", person, act.at);
+        Statement open = state_->ask("SELECT count(*) FROM station_codes WHERE person = $1 AND station = ''", person);
+        if (open.next() && open.integer(0) >= kMostOpen)
+            throw invalid("number of codes", std::to_string(kMostOpen), "use those that were made, or wait a day");
+    }
     if (!state_->any("INSERT INTO station_codes (hash, name, expires, station, kind, person) VALUES ($1, $2, $3, '', "
                      "$4, $5) ON CONFLICT DO NOTHING RETURNING hash",
                      sha256(code), name, expires, kind, person))

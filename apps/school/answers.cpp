@@ -33,7 +33,7 @@ int statusOf(const core::Error& error) {
         {"store-busy", 503},       {"protocol-other", 426}, {"exam-damaged", 400},    {"exam-newer", 400},
         {"exam-other-key", 403},   {"exam-changed", 403},   {"exam-chain", 409},      {"account-suspended", 403},
         {"exam-invigilator", 403}, {"exam-early", 403},     {"code-other", 403},      {"station-anothers", 403},
-        {"station-anybodys", 403}, {"work-lost", 409},      {"engine-other", 426}};
+        {"station-anybodys", 403}, {"work-lost", 409},      {"engine-other", 426},    {"work-enough", 429}};
     const auto found = statuses.find(error.id());
     return found != statuses.end() ? found->second : 500;
 }

@@ -103,7 +103,8 @@ void setCandidates(const ExamOptions& o) {
         return set(o.person, code, exam::candidateHash(o.exam, code));
     }
     for (const school::Enrolment& one : books.enrolments(exam->schoolClass))
-        if (one.role == "student" && known(one.person) == there.end()) {
+        if (const auto person = books.person(one.person);
+            person && person->erased == 0 && one.role == "student" && known(one.person) == there.end()) {
             const std::string code = school::newStationCode();
             set(one.person, code, exam::candidateHash(o.exam, code));
         }

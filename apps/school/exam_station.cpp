@@ -43,10 +43,10 @@ void enrolForExams(const std::string& server, const std::string& code, const std
     core::prepareOutputFolder(folder, true);
     const exam::SigningKey own = exam::keptSigningKey(folder / "station.key");
     const school_station::Enrolment made = school_station::enrol(server, code, "", "exam");
-    const std::string serverKey = Line(server, made.key).post("/api/v1/exams/station", own.open);
+    const std::string serverKey = Line(made.server, made.key).post("/api/v1/exams/station", own.open);
     if (!school::isHex(serverKey, 64))
         throw core::Error("it gives no key of its own", server, "bring the server up to date").as("server-nonsense");
-    exam::keepStation({server, made.station, made.key, serverKey}, folder);
+    exam::keepStation({made.server, made.station, made.key, serverKey}, folder);
 }
 
 Fetched fetchExams(const std::filesystem::path& folder) {
@@ -66,7 +66,8 @@ Fetched fetchExams(const std::filesystem::path& folder) {
             std::filesystem::path file;
             if (!exam::hasExercise(folder, opened)) {
                 file = folder / ("exercise." + school::newId());
-                core::writeFile(file, line.get("/api/v1/exams/" + id + "/exercise"), {.ownerOnly = true});
+                core::writeFile(file, line.get("/api/v1/exams/" + id + "/exercise", Line::kMostFile),
+                                {.ownerOnly = true});
             }
             try {
                 fetched.packs.push_back(exam::installPack(folder, pack, file));

@@ -11,7 +11,7 @@
 namespace handpiece::school_server {
 namespace {
 constexpr auto kPause = std::chrono::seconds(30);
-constexpr school::Milliseconds kDayMs = 86'400'000;
+constexpr school::Milliseconds kDayMs = 86'400'000, kTenMinutesMs = 600'000;
 }  // namespace
 
 void Housekeeper::start() {
@@ -47,6 +47,12 @@ void Housekeeper::round() {
         open->sweep(now);
         service_.reviews.removeGone(*open);
         expired_ = now;
+    }
+    if (now - retried_ >= kTenMinutesMs || now < retried_) {
+        if (const std::int64_t again = open->retry(open->sharedTime(now)); again > 0)
+            std::fprintf(stderr, "handpiece-school: %lld works that were given up are tried again\n",
+                         static_cast<long long>(again));
+        retried_ = now;
     }
     if (school::LtiBooks(*open).platforms().empty()) return;
     (void)queueGrades(*open, now);

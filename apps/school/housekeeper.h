@@ -26,6 +26,7 @@ class Housekeeper {
   private:
     Service& service_;
     school::Milliseconds expired_ = 0;  ///< when what need not be kept last went
+    school::Milliseconds retried_ = 0;  ///< when what was given up was last begun anew
     std::mutex mutex_;
     std::condition_variable wake_;
     bool ends_ = false;

@@ -137,9 +137,9 @@ bool enterProof(Books& books, const Job& job, sandboxed::Proof proof, const std:
     const std::optional<school::PushedAttempt> attempt = books.attempt(job.attempt);
     if (!attempt) return finish(books, job, refused("the attempt is gone"), worker, now);
     for (std::size_t i = 0; i < attempt->files.size(); ++i)
-        if (!proof.contents.at(i).empty()) {
-            books.keepContent(attempt->files[i], proof.contents[i]);
-            books.keepSketch(attempt->files[i], proof.sketches.at(i));
+        if (!proof.contents.inputs.at(i).empty()) {
+            books.keepContent(attempt->files[i], proof.contents.inputs[i]);
+            books.keepSketch(attempt->files[i], proof.contents.sketches.at(i));
         }
     if (ExamBooks(books).sitting(job.attempt)) ExamBooks(books).setDoubts(job.attempt, proof.doubts, now);
     if (books.otherPersonWith(job.attempt))

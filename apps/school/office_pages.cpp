@@ -429,8 +429,8 @@ Page stationsPage(const Visit& v, const std::string& shown) {
         rows.push_back({{one.name},
                         {one.kind == "worker" ? word("cuts-again")
                          : one.kind != "exam" ? "\u2013"
-                         : one.released == 0 ? word("exams-unreleased")
-                                             : words()("school-office.exams-since", report::momentOf(one.released))},
+                         : one.released == 0  ? word("exams-unreleased")
+                                              : words()("school-office.exams-since", report::momentOf(one.released))},
                         {report::momentOf(one.enrolled)},
                         {one.revoked > 0 ? report::momentOf(one.revoked) : "\u2013"},
                         {one.id}});

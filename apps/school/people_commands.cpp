@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <span>
@@ -41,10 +42,11 @@ void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, 
     std::string csv =
         "\xef\xbb\xbf"
         "login,name,code\r\n";
-    std::size_t count = 0;
+    std::size_t count = 0, without = 0;
     for (const school::RosterChange& change : changes) {
         if (change.kind != school::RosterChange::Kind::addPerson) continue;
         const auto person = books.person(change.person);
+        if (person && person->login.empty()) ++without;
         if (!person || person->login.empty()) continue;
         const std::string code = school::newStationCode();
         school::BooksAccounts(books).offerPasswordCode(
@@ -54,6 +56,11 @@ void writeCodes(Books& books, const std::vector<school::RosterChange>& changes, 
     }
     core::writeFile(o.codes, csv, {.ownerOnly = true});
     fmt::print("{} codes in {}, for {} days: each sets its own password at /first\n", count, o.codes, o.days);
+    if (without > 0)
+        std::fprintf(stderr,
+                     "%zu new people have no login, and so no code: give the list a column \"login\", and import it "
+                     "again\n",
+                     without);
 }
 
 bool makesAdministrators(const school::Roster& roster) {

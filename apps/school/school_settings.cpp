@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <cstdlib>
 
 #include "handpiece/base/config/table.h"
@@ -129,6 +130,8 @@ SchoolSettings placeOfBooks(const std::string& data, const std::string& database
             place.data, fmt::format("runuser -u {} -- handpiece school ...", name))
             .as("not-owner", {name});
     }
+    if (place.database.empty() && access((place.data + "/books.db").c_str(), F_OK) != 0)
+        std::fprintf(stderr, "there was no school in %s: this begins a new one\n", place.data.c_str());
     return place;
 }
 

@@ -82,6 +82,12 @@ void serve(const ServeOptions& asked) {
                               "give HOST:PORT, as 127.0.0.1:8620");
     }
     school_server::Server server(settings);
+    if (settings.certificate.empty() && settings.host != "127.0.0.1" && settings.host != "::1" &&
+        settings.host != "localhost")
+        std::fprintf(stderr,
+                     "it speaks plain HTTP to other machines: give --certificate and --key, or --listen 127.0.0.1:%d "
+                     "behind a proxy that has them\n",
+                     server.port());
     fmt::print("{}://{}:{} (Ctrl-C ends it)\n", o.certificate.empty() ? "http" : "https", settings.host, server.port());
     (void)std::fflush(stdout);
     // The port is open: who comes now waits for run().
@@ -124,7 +130,9 @@ void addServeCommand(cli::Command& app) {
     command.option("--sign-on-header", o.given.signOnHeader, "in which it names who logs in (X-Handpiece-User)");
     command.flag("--worker", o.worker,
                  "only work: cut sessions again for books that this machine sees; else: handpiece school worker");
-    command.footer("Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620");
+    command.footer(
+        "Example:\n  handpiece serve --data /srv/handpiece --listen 0.0.0.0:8620 --certificate school.pem --key "
+        "key.pem");
     command.callback([options, command] {
         if (command.isGiven("--workers")) options->given.workers = options->workers;
         if (options->ownStationsOnly) options->given.ownStationsOnly = true;

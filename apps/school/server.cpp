@@ -179,6 +179,9 @@ struct Server::State : Service {
         http->set_pre_routing_handler([this](const Request& request, Response& response) {
             using Result = httplib::Server::HandlerResponse;
             const auto status = door.refuses(request);
+            // Everything is sent whole: the library would send pieces of pages as 200, and of a refusal as many as are
+            // asked for. The request is its own, and not const there.
+            const_cast<Request&>(request).ranges.clear();
             // From then on a browser that was here once comes by TLS alone.
             if (isSecure(request, settings)) response.set_header("Strict-Transport-Security", "max-age=31536000");
             // Of each request anew: an answer that nobody took was not logged.

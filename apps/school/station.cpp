@@ -159,10 +159,11 @@ void writeEnrolment(const Enrolment& e, const fs::path& file) {
 
 Enrolment enrol(const std::string& server, const std::string& code, const std::string& person,
                 const std::string& kind) {
-    Line line(server, {});
+    const std::string address = serverAddress(server);
+    Line line(address, {});
     const school_wire::Enrolled made = school_wire::enrolledFrom(
         line.post("/api/v1/enrol", school_wire::toJson(school_wire::Enrol{code, person, kind})));
-    return {server, made.station, made.key, made.person.empty() ? person : made.person, 0};
+    return {address, made.station, made.key, made.person.empty() ? person : made.person, 0};
 }
 
 Pushed push(school::Store& store, const fs::path& sessions, Enrolment& enrolment, const fs::path& file,

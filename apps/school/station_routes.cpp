@@ -77,8 +77,11 @@ std::vector<Entry> stationRoutes(Service* of) {
              const auto station = of->books.take()->enrolStation(school::typedStationCode(enrol.code), made.station,
                                                                  made.key, of->clock());
              if (!station)
-                 throw core::Error("this code is not known, was used, or is too old", "",
-                                   "have a new one made: handpiece school code")
+                 throw core::Error(
+                     "this code is not known, was used, or is too old", "",
+                     "have a new one made: handpiece school code" + std::string(enrol.kind == "worker" ? " --worker"
+                                                                                : enrol.kind == "exam" ? " --exam"
+                                                                                                       : ""))
                      .as("code-unknown");
              made.person = station->person;
              answer(response, toJson(made), 201);

@@ -34,6 +34,12 @@ class Message {
         if (value.size() > most) fail(key, "is too long");
         return value;
     }
+    /// A SHA-256.
+    [[nodiscard]] std::string hash(const char* key) const {
+        std::string value = text(key, 64);
+        if (!school::isHex(value, 64)) fail(key, "is no SHA-256");
+        return value;
+    }
     /// Empty where an older program says nothing of it.
     [[nodiscard]] std::string textIfAny(const char* key) const { return has(key) ? text(key) : std::string(); }
     [[nodiscard]] double number(const char* key) const {
@@ -231,7 +237,8 @@ std::string toJson(const Work& w) {
                    {"exercise", file(w.exercise)}});
 }
 Work workFrom(std::string_view json) {
-    const auto file = [](const Message& m) { return Work::File{m.text("hash", 64), m.whole<std::uint64_t>("bytes")}; };
+    // They become files' names.
+    const auto file = [](const Message& m) { return Work::File{m.hash("hash"), m.whole<std::uint64_t>("bytes")}; };
     const Message m(json);
     Work work{m.whole<std::int64_t>("number"), m.whole<std::int64_t>("turn"), m.whole<school::Milliseconds>("lease_ms"),
               m.text("question", kMostMessage)};
@@ -313,7 +320,8 @@ std::string toJson(const core::Error& e) {
 core::Error errorFrom(std::string_view json, int status) {
     try {
         const Message m(json);
-        return core::Error(m.text("what"), std::string(kServer) + ": " + m.text("where"), m.text("remedy"))
+        const std::string where = m.text("where");
+        return core::Error(m.text("what"), std::string(kServer) + (where.empty() ? "" : ": " + where), m.text("remedy"))
             .as(m.text("error"), m.texts("arguments"));
     } catch (const core::Error&) {
         return core::Error(fmt::format("it answers {} and nothing that can be read", status), "the school's server",

@@ -40,7 +40,9 @@ void Worker::loop() {
             told.clear();
         } catch (const std::exception& e) {
             // The same is told once.
-            const std::string what = core::asError(e).what();
+            const core::Error error = core::asError(e);
+            const std::string what = error.what();
+            if (refused_ && (error.id() == "not-enrolled" || error.id() == "code-other")) return refused_(error);
             if (told != what) std::fprintf(stderr, "handpiece-school: worker: %s\n", what.c_str());
             told = what;
             pause = std::min(2 * pause, kLongest);
@@ -69,7 +71,8 @@ bool Worker::workOnce() {
     } catch (const core::Error& e) {
         // What is wrong here, or on the way, costs the work nothing. A reader was killed: not at once again.
         constexpr school::Milliseconds kPause = 10'000;
-        const bool isHere = e.id() == "sandbox-start" || e.id() == "server-silent" || e.problem() == "cancelled";
+        const bool isHere = e.id() == "sandbox-start" || e.id() == "server-silent" || e.id() == "no-space" ||
+                            e.id() == "not-writable" || e.problem() == "cancelled";
         const school::Milliseconds pause = e.id() == "sandbox-start"    ? 3 * kPause
                                            : e.id() == "sandbox-killed" ? work->turn() * kPause
                                                                         : 0;

@@ -6,10 +6,12 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
 
+#include "handpiece/base/core/error.h"
 #include "school/lent_work.h"
 
 namespace handpiece::school_server {
@@ -19,6 +21,9 @@ class Worker {
     /// `pause` lies between two looks for work; where one fails they grow to a minute.
     explicit Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause = std::chrono::seconds(1),
                     std::chrono::milliseconds renewal = std::chrono::milliseconds(kLeaseMs / 4));
+    /// Before start(): called once, from its thread, when a server takes no work of this machine any more. It ends
+    /// then.
+    void onRefused(std::function<void(const core::Error&)> told) { refused_ = std::move(told); }
     ~Worker();
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
@@ -34,6 +39,7 @@ class Worker {
 
     const std::unique_ptr<WorkSource> source_;
     const std::chrono::milliseconds pause_, renewal_;
+    std::function<void(const core::Error&)> refused_;
     std::mutex mutex_;
     std::condition_variable wake_;
     std::atomic<bool> ends_{false};

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machine that cuts works again for a school's server elsewhere, over the server's own protocol.
 #include <fmt/format.h>
+#include <sys/file.h>
 
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <mutex>
+#include <optional>
 #include <vector>
 
 #include "handpiece/base/core/error.h"
@@ -33,20 +36,53 @@ void enrol(const WorkerOptions& o) {
     const std::filesystem::path file = enrolmentIn(o);
     if (core::isThere(file) && !o.again)
         throw core::Error("this machine works for a school already", file.string(),
-                          "say --again to enrol it anew; it has one key");
+                          "say --again to enrol it anew; the key of before holds until the office revokes it");
     core::prepareOutputFolder(o.home, true);
+    std::filesystem::permissions(o.home, std::filesystem::perms::owner_all);
     school_station::writeEnrolment(school_station::enrol(o.server, o.code, "", "worker"), file);
     fmt::print("enrolled; now: handpiece school worker run --home {}\n", o.home);
+}
+
+school_station::Enrolment enrolmentOf(const WorkerOptions& o) {
+    try {
+        return school_station::readEnrolment(enrolmentIn(o));
+    } catch (const core::Error& e) {
+        throw core::Error(e.id() == "not-enrolled" ? "this machine works for no school yet" : e.problem(), e.where(),
+                          "enrol it: handpiece school worker enrol SERVER CODE --again --home " + o.home)
+            .as(e.id());
+    }
+}
+
+/// One at a time works from a folder.
+core::FileStream lockOn(const std::filesystem::path& folder) {
+    core::FileStream lock = core::createOwnFile(folder / "running");
+    if (!lock || flock(fileno(lock.get()), LOCK_EX | LOCK_NB) != 0)
+        throw core::Error("another worker runs from this folder", folder.string(),
+                          "one is enough: it takes --workers; or give another --home")
+            .as("not-writable", {folder.string()});
+    return lock;
 }
 
 void run(const WorkerOptions& o) {
     std::atomic<bool> ended{false};
     listenForEnd();
-    const school_station::Enrolment enrolment = school_station::readEnrolment(enrolmentIn(o));
+    const school_station::Enrolment enrolment = enrolmentOf(o);
+    const core::FileStream lock = lockOn(o.home);
+    const std::filesystem::path works = std::filesystem::path(o.home) / "works";
+    std::error_code none;  // what one that was killed left
+    std::filesystem::remove_all(works, none);
+    core::prepareOutputFolder(works, true);
+    std::mutex guard;
+    std::optional<core::Error> refused;
     std::vector<std::unique_ptr<school_server::Worker>> workers;
     for (std::size_t i = 0; i < o.workers; ++i) {
         workers.push_back(
-            std::make_unique<school_server::Worker>(school_server::worksOf(enrolment), std::chrono::seconds(2)));
+            std::make_unique<school_server::Worker>(school_server::worksOf(enrolment, works), std::chrono::seconds(2)));
+        workers.back()->onRefused([&](const core::Error& e) {
+            const std::lock_guard held(guard);
+            refused = e;
+            ended = true;
+        });
         workers.back()->start();
     }
     tellManager("READY=1");
@@ -56,6 +92,12 @@ void run(const WorkerOptions& o) {
     tellManager("STOPPING=1");
     for (const auto& one : workers)
         one->stop();
+    if (refused)
+        throw core::Error("the server takes no work of this machine: " + refused->problem(), enrolment.server,
+                          "have a new code made (handpiece school code --worker), then: handpiece school worker enrol "
+                          "SERVER CODE --again --home " +
+                              o.home)
+            .as(refused->id(), refused->arguments());
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "handpiece/app/assessment/assessment_json.h"
+#include "handpiece/assess/rubric/rubric.h"
 #include "handpiece/base/core/engine_revision.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
@@ -20,6 +22,8 @@ using school::Milliseconds;
 
 namespace {
 
+constexpr std::int64_t kMostInHand = 64;
+
 std::string nameOf(const school::Station& station) {
     return "worker " + station.id;
 }
@@ -32,13 +36,25 @@ school::Job jobOf(const school::Books& books, const Request& request, const scho
         .as("work-lost", {number, turn});
 }
 
-sandboxed::Proof proofIn(const Request& request, std::size_t sessions) {
+core::Error noProof(const std::string& why) {
+    return core::Error("this is no proof of this work: " + why, "message", "use programs that belong together")
+        .as("message-damaged", {"proof", why});
+}
+/// Of this job's rubric, and of what was handed in.
+sandboxed::Proof proofIn(const Request& request, const school::Job& job, const school::PushedAttempt& attempt) {
+    sandboxed::Proof proof;
     try {
-        return sandboxed::proofFrom(request.body, sessions);
+        proof = sandboxed::proofFrom(request.body, attempt.files.size());
     } catch (const core::Error& e) {
-        throw core::Error("this is no proof of this work", "message", "use programs that belong together")
-            .as("message-damaged", {"proof", e.problem()});
+        throw noProof(e.problem());
     }
+    if (proof.score.result.empty()) return proof;
+    const score::Result result = assessment::parseResult(proof.score.result, "message");
+    if (rubric::hashText(result.assessment.rubricHash) != job.rubric) throw noProof("it is by another rubric");
+    if (proof.score.state == "proven" && (result.identity.exerciseHash != attempt.attempt.exerciseHash ||
+                                          result.identity.sessionHashes != attempt.attempt.sessionHashes))
+        throw noProof("it is of another work");
+    return proof;
 }
 
 std::uint64_t sizeOf(const school::Books& books, const std::string& hash) {
@@ -71,6 +87,11 @@ std::vector<Entry> workerRoutes(Service* of) {
                                    station.name, "bring both to the same version; the works wait")
                      .as("engine-other", {std::to_string(engine), std::to_string(core::kEngineRevision)});
              auto open = of->books.take();
+             // Who takes all there is keeps it from the others.
+             if (open->countLent(nameOf(station)) >= kMostInHand)
+                 throw core::Error("this machine has as much in hand as it may", station.name,
+                                   "finish some of it first")
+                     .as("work-enough", {std::to_string(kMostInHand)});
              const auto taken = takeJob(*open, nameOf(station), open->sharedTime(of->clock()), kLeaseMs);
              if (!taken) {
                  response.status = 204;
@@ -101,17 +122,28 @@ std::vector<Entry> workerRoutes(Service* of) {
              answer(response, std::move(page), false);
          }}},
         {"POST", proof, WorkerHandler{[of](const Request& request, Response& response, const school::Station& station) {
+             std::optional<sandboxed::Proof> found;
+             std::vector<std::filesystem::path> sessions;
+             {
+                 auto open = of->books.take();
+                 const school::Job job = jobOf(*open, request, station);
+                 const auto attempt = open->attempt(job.attempt);
+                 if (!attempt)
+                     throw core::Error("the attempt is gone", job.attempt, "take the next one").as("work-lost");
+                 found = proofIn(request, job, *attempt);
+                 for (const std::string& one : attempt->files)
+                     sessions.push_back(open->files().path(one));
+             }
+             // Of its work a worker may say what it likes; not whose recordings are the same.
+             found->contents = of->readings.contents(sessions);
              auto open = of->books.take();
              const school::Job job = jobOf(*open, request, station);
-             const auto attempt = open->attempt(job.attempt);
-             if (!attempt) throw core::Error("the attempt is gone", job.attempt, "take the next one").as("work-lost");
-             if (!enterProof(*open, job, proofIn(request, attempt->files.size()), nameOf(station),
-                             open->sharedTime(of->clock())))
+             if (!enterProof(*open, job, std::move(*found), nameOf(station), open->sharedTime(of->clock())))
                  (void)jobOf(*open, request, station);
              answer(response, "{}");
          }}},
         {"POST", back, WorkerHandler{[of](const Request& request, Response& response, const school::Station& station) {
-             constexpr std::uint64_t kLongest = 3'600'000;
+             constexpr std::uint64_t kLongest = 60'000;
              const std::uint64_t pause = std::min(numberOf(request, "pause_ms"), kLongest);
              auto open = of->books.take();
              (void)open->giveBack(jobOf(*open, request, station),

@@ -16,7 +16,7 @@ namespace {
 void prove(std::string_view text, std::size_t sessions) {
     (void)fuzz::readText(reinterpret_cast<const std::uint8_t*>(text.data()), text.size(), [&](std::string_view one) {
         const sandboxed::Proof proof = sandboxed::proofFrom(std::string(one), sessions);
-        if (!std::isfinite(proof.score.score) || proof.contents.size() != sessions) __builtin_trap();
+        if (!std::isfinite(proof.score.score) || proof.contents.inputs.size() != sessions) __builtin_trap();
         const std::string once = sandboxed::toJson(proof);
         const auto again = fuzz::mustRead([&] { return sandboxed::proofFrom(once, sessions); });
         if (sandboxed::toJson(again) != once) __builtin_trap();

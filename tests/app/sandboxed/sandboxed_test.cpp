@@ -211,7 +211,7 @@ TEST_F(Sandboxed, HonestWorkIsWorthTheSame) {
     EXPECT_EQ(apart.score.engine, here.engine);
     proving::RecordedInputs inputs(honest());
     inputs.goOn();
-    EXPECT_THAT(apart.contents, ElementsAre(inputs.hash()));
+    EXPECT_THAT(apart.contents.inputs, ElementsAre(inputs.hash()));
     EXPECT_THAT(apart.doubts, IsEmpty());
     const ReadThrough read = readThrough(honest());
     EXPECT_EQ(read.ticks, session::SessionReader(honest()).size());
@@ -396,7 +396,7 @@ TEST_F(Sandboxed, WhatIsNoSessionIsRefused) {
         const Proof proof = proved(hostile());
         EXPECT_EQ(proof.score.state, "refused");
         EXPECT_NE(proof.score.reason, "");
-        EXPECT_THAT(proof.contents, ElementsAre(""));
+        EXPECT_THAT(proof.contents.inputs, ElementsAre(""));
     }
 }
 

@@ -356,6 +356,8 @@ class VisibilityTest : public TeachingTest {
         if (what == "exercises") return {exercise_};
         if (what == "rubrics") return {marked_};
         if (what == "live") return {station_};
+        // Of none that a worker has in hand: a person's log-in and a station's key open none.
+        if (what == "works" || what.empty()) return {"1"};
         if (what == "files") return {school::sha256Of(session())};
         return {};
     }

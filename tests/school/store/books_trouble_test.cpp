@@ -81,9 +81,19 @@ TEST_P(BooksInTroubleTest, AnAttemptWaitsToBeScoredOnceItIsWholeByItsAssignments
     EXPECT_EQ(books->progress("third").failed, 1);
     books->rescore("fourth", "a1", shortHash(0xac), kAdmin);
     for (int turn = 1; turn <= Books::kMostTurns; ++turn)
-        EXPECT_TRUE(books->giveBack(books->takeJob("w", now, 100).value()));
+        EXPECT_TRUE(books->giveBack(books->takeJob("w", now, 100).value(), now));
     EXPECT_FALSE(books->takeJob("w", now, 100));
     EXPECT_EQ(books->progress("fourth").failed, 1);
+    // But not for good: an hour later there is one more turn.
+    EXPECT_EQ(books->retry(now), 0);
+    const Milliseconds later = now + 3'600'000;
+    EXPECT_EQ(books->retry(later), 2);
+    EXPECT_EQ(books->progress("fourth").waiting, 1);
+    const Job third = books->takeJob("w", later, 100).value(), fourth = books->takeJob("w", later, 100).value();
+    EXPECT_TRUE(books->finish(fourth, scoreOf(fourth, "w")));
+    EXPECT_FALSE(books->takeJob("w", later + 100, 100)) << "it is given up again";
+    EXPECT_EQ(books->progress("third").failed, 1);
+    EXPECT_FALSE(books->finish(third, scoreOf(third, "w")));
 }
 
 // Threads and processes, some of which die with work in hand.

@@ -182,6 +182,38 @@ Exercise exerciseFrom(const Said& said) {
 
 }  // namespace
 
+namespace {
+
+Contents contentsFrom(const Said& said, std::size_t sessions) {
+    Contents contents{said.texts("contents", sessions, 64), {}};
+    if (contents.inputs.size() != sessions) throw noAnswer();
+    for (const std::string& one : contents.inputs)
+        if (!one.empty() && !isHash(one, 64)) throw noAnswer();
+    const Json& sketches = said.at("sketches");
+    if (!sketches.is_array() || sketches.size() != sessions) throw noAnswer();
+    for (const Json& one : sketches) {
+        contents.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
+        for (const std::string& hash : contents.sketches.back())
+            if (!isHash(hash, 16)) throw noAnswer();
+    }
+    return contents;
+}
+Contents nothingIn(std::size_t sessions) {
+    return {std::vector<std::string>(sessions), std::vector<std::vector<std::string>>(sessions)};
+}
+
+}  // namespace
+
+Contents contentsOf(const std::vector<fs::path>& sessions) {
+    const Files files{sessions, {}};
+    try {
+        return contentsFrom(Said(asked("contents", Json::object(), files, boundsFor(files)).text), sessions.size());
+    } catch (const core::Error& e) {
+        if (!sandbox::isFault(e)) throw;
+        return nothingIn(sessions.size());
+    }
+}
+
 std::string questionOf(const school::PushedAttempt& pushed, const std::string& rubric,
                        const std::optional<ExamNotes>& exam) {
     const school::Attempt& a = pushed.attempt;
@@ -210,9 +242,12 @@ std::string toJson(const Proof& proof) {
                    {"passed", s.passed},
                    {"borderline", s.borderline},
                    {"result", s.result},
-                   {"contents", proof.contents},
-                   {"sketches", proof.sketches},
+                   {"contents", proof.contents.inputs},
+                   {"sketches", proof.contents.sketches},
                    {"doubts", proof.doubts}});
+}
+std::string toJson(const Contents& contents) {
+    return dumped({{"contents", contents.inputs}, {"sketches", contents.sketches}});
 }
 
 Proof proofFrom(const std::string& json, std::size_t sessions) {
@@ -228,19 +263,16 @@ Proof proofFrom(const std::string& json, std::size_t sessions) {
     const bool isKind = (s.state == "proven" || s.state == "refused") &&
                         (s.passed == "yes" || s.passed == "no" || s.passed == "teacher") &&
                         (s.state == "refused" || !s.result.empty());
-    if (!isKind) throw noAnswer();
-    if (!s.result.empty()) (void)assessment::parseResult(s.result, "what was found");
-    proof.contents = said.texts("contents", sessions, 64);
-    if (proof.contents.size() != sessions) throw noAnswer();
-    for (const std::string& one : proof.contents)
-        if (!one.empty() && !isHash(one, 64)) throw noAnswer();
-    const Json& sketches = said.at("sketches");
-    if (!sketches.is_array() || sketches.size() != sessions) throw noAnswer();
-    for (const Json& one : sketches) {
-        proof.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
-        for (const std::string& hash : proof.sketches.back())
-            if (!isHash(hash, 16)) throw noAnswer();
+    // What no rubric gives.
+    constexpr double kMostPoints = 1e6, kSame = 1e-6;
+    const bool isInOrder = s.score >= 0.0 && s.score <= s.maxScore + kSame && s.maxScore <= kMostPoints &&
+                           s.wholeScore >= 0.0 && s.wholeScore <= kMostPoints;
+    if (!isKind || !isInOrder) throw noAnswer();
+    if (!s.result.empty()) {
+        const score::Assessment a = assessment::parseResult(s.result, "what was found").assessment;
+        if (std::abs(a.score - s.score) > kSame || std::abs(a.maxScore - s.maxScore) > kSame) throw noAnswer();
     }
+    proof.contents = contentsFrom(said, sessions);
     proof.doubts = said.texts("doubts", 1000, 1000);
     return proof;
 }
@@ -254,8 +286,7 @@ Proof prove(const std::string& question, const Files& files, const core::Progres
         return proofFrom(asked("prove", std::move(asks), files, boundsFor(files), progress).text, sessions);
     } catch (const core::Error& e) {
         if (!sandbox::isFault(e) || e.id() == "sandbox-exercise") throw;
-        Proof proof{refusedFor(e), std::vector<std::string>(sessions), std::vector<std::vector<std::string>>(sessions),
-                    {}};
+        Proof proof{refusedFor(e), nothingIn(sessions), {}};
         if (isExam) proof.doubts = {"its recordings cannot be held against what was noted: " + e.problem()};
         return proof;
     }

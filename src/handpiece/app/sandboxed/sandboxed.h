@@ -37,11 +37,15 @@ struct Files {
 struct ExamNotes {
     std::vector<std::string> locked{}, entries{};
 };
+/// What recordings hold, whatever their bytes; one entry a session.
+struct Contents {
+    std::vector<std::string> inputs{};                 ///< as one number; empty: nothing was done in it
+    std::vector<std::vector<std::string>> sketches{};  ///< proving::motionSketch()
+};
 struct Proof {
     school::Score score{};
-    std::vector<std::string> contents{};  ///< by session, its inputs as one number; empty: nothing was done in it
-    std::vector<std::vector<std::string>> sketches{};  ///< by session: proving::motionSketch()
-    std::vector<std::string> doubts{};                 ///< of its exam, as proving::recordingDoubts()
+    Contents contents{};
+    std::vector<std::string> doubts{};  ///< of its exam, as proving::recordingDoubts()
 };
 /// What is asked of an attempt that was pushed, but for its files: JSON, which may go to another machine. It names
 /// nobody. `rubric` is a text.
@@ -51,8 +55,11 @@ struct Proof {
 /// cannot be read: it is refused, as one is that ends its reader. What is wrong with exercise or rubric throws
 /// "sandbox-exercise".
 [[nodiscard]] Proof prove(const std::string& question, const Files& files, const core::Progress& progress = {});
+/// That of a session which cannot be read is empty.
+[[nodiscard]] Contents contentsOf(const std::vector<std::filesystem::path>& sessions);
 /// For the way between two machines. Throws core::Error for what is no proof of so many sessions.
 [[nodiscard]] std::string toJson(const Proof& proof);
+[[nodiscard]] std::string toJson(const Contents& contents);
 [[nodiscard]] Proof proofFrom(const std::string& json, std::size_t sessions);
 
 /// What a review page shows. `result` and `rubric` are texts of the books; empty: the work is shown alone.

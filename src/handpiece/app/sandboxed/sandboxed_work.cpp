@@ -61,6 +61,16 @@ std::vector<std::string> sketchOf(const std::filesystem::path& session) {
     }
 }
 
+Contents contentsIn(std::span<const std::filesystem::path> sessions) {
+    Contents contents;
+    for (const std::filesystem::path& one : sessions)
+        contents.inputs.push_back(contentOf(one)), contents.sketches.push_back(sketchOf(one));
+    return contents;
+}
+Answer contents(const Json& asked, const core::Progress& /*progress*/) {
+    return {toJson(contentsIn(sessionsOf(asked)))};
+}
+
 std::vector<std::string> doubtsOf(const Json& exam, std::span<const std::filesystem::path> sessions) {
     try {
         std::vector<exam::Entry> entries;
@@ -91,8 +101,7 @@ Answer prove(const Json& asked, const core::Progress& progress) {
     });
     const std::vector<std::filesystem::path> sessions = sessionsOf(asked);
     Proof proof;
-    for (const std::filesystem::path& one : sessions)
-        proof.contents.push_back(contentOf(one)), proof.sketches.push_back(sketchOf(one));
+    proof.contents = contentsIn(sessions);
     school::PushedAttempt pushed;
     school::Attempt& a = pushed.attempt;
     const Json& of = asked.at("attempt");
@@ -287,11 +296,17 @@ Answer studentReport(const Json& asked, const core::Progress&) {
 
 Answer answer(const std::string& request, const core::Progress& progress) {
     static const std::map<std::string, Answer (*)(const Json&, const core::Progress&)> works{
-        {"prove", prove},       {"review", review},
-        {"picture", picture},   {"session", readThrough},
-        {"package", package},   {"recordings", recordings},
-        {"returned", returned}, {"exercise", exercise},
-        {"pack", pack},         {"student report", studentReport}};
+        {"prove", prove},
+        {"contents", contents},
+        {"review", review},
+        {"picture", picture},
+        {"session", readThrough},
+        {"package", package},
+        {"recordings", recordings},
+        {"returned", returned},
+        {"exercise", exercise},
+        {"pack", pack},
+        {"student report", studentReport}};
     const Json asked = config::requireOutsideJson<Json>(request, {.values = 10'000'000});
     const config::LanguageHere here(asked.at("language").get<std::string>());
     return works.at(asked.at("work"))(asked, progress);

@@ -293,6 +293,8 @@ class Books {
     /// What this worker has in hand; nothing where that turn is over. Its lease may have run out (`leaseUntil`) without
     /// another having taken it.
     [[nodiscard]] std::optional<Job> lent(const std::string& worker, std::int64_t number, std::int64_t turn) const;
+    /// How many that are.
+    [[nodiscard]] std::int64_t countLent(const std::string& worker) const;
     /// False: it is another's by now, or done; drop it.
     bool renew(Job& job, Milliseconds now, Milliseconds lease);
     /// Score and end of the job, once: false: another was quicker, and nothing was stored.
@@ -300,6 +302,8 @@ class Books {
     /// Back to the others: this worker cannot do it. Nobody takes it before `notBefore`; it does not count as one of
     /// its turns where that was no affair of the work's.
     bool giveBack(const Job& job, Milliseconds notBefore = 0, bool counts = true);
+    /// What was given up an hour ago or longer waits for one more turn. Returns how much that is.
+    std::int64_t retry(Milliseconds now);
     [[nodiscard]] Progress progress(const std::string& campaign) const;
 
     /// A look at something, or what else leaves no other trace.

@@ -280,13 +280,16 @@ std::vector<PushedAttempt> Books::attemptsOf(const std::string& person, const st
 
 void Books::keepContent(const std::string& file, const std::string& inputs) {
     Transaction transaction(*state_->database, Database::Access::beside);
-    state_->run("INSERT INTO contents (file, inputs) VALUES ($1, $2) ON CONFLICT DO NOTHING", file, inputs);
+    state_->run("INSERT INTO contents (file, inputs) VALUES ($1, $2) ON CONFLICT (file) DO UPDATE SET inputs = "
+                "excluded.inputs",
+                file, inputs);
     transaction.commit();
 }
 
 void Books::keepSketch(const std::string& file, const std::vector<std::string>& hashes) {
     if (hashes.empty()) return;
     Transaction transaction(*state_->database, Database::Access::beside);
+    state_->run("DELETE FROM sketches WHERE file = $1", file);
     for (const std::string& hash : hashes)
         state_->run("INSERT INTO sketches (file, hash) VALUES ($1, $2) ON CONFLICT DO NOTHING", file, hash);
     transaction.commit();
@@ -476,6 +479,12 @@ std::optional<Job> Books::lent(const std::string& worker, std::int64_t number, s
     return Job{number, turn, row.text(0), row.text(1), row.text(2), row.integer(3)};
 }
 
+std::int64_t Books::countLent(const std::string& worker) const {
+    Statement row = state_->ask(
+        "SELECT count(*) FROM jobs WHERE state IN ('waiting', 'taken') AND state = 'taken' AND worker = $1", worker);
+    return row.next() ? row.integer(0) : 0;
+}
+
 namespace {
 /// Still this lending of this job.
 constexpr const char* kStillMine =
@@ -519,6 +528,21 @@ bool Books::giveBack(const Job& job, Milliseconds notBefore, bool counts) {
         job.number, job.turn, job.campaign, job.attempt, notBefore, std::int64_t{counts});
     transaction.commit();
     return mine;
+}
+
+std::int64_t Books::retry(Milliseconds now) {
+    constexpr Milliseconds kHour = 3'600'000;
+    std::int64_t again = 0;
+    Transaction transaction(*state_->database, Database::Access::beside);
+    {
+        Statement rows = state_->ask(
+            "UPDATE jobs SET state = 'waiting' WHERE state = 'failed' AND lease_until <= $1 RETURNING number",
+            now - kHour);
+        while (rows.next())
+            ++again;
+    }
+    transaction.commit();
+    return again;
 }
 
 Progress Books::progress(const std::string& campaign) const {

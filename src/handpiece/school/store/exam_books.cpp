@@ -87,7 +87,8 @@ void ExamBooks::set(const ExamCandidate& c, const Act& act) {
         requireCount("number of minutes", c.pauseMinutes, 600);
     Transaction transaction(*state_.database);
     requireExam(state_.ask("SELECT 1 FROM exam_settings WHERE exam = $1", c.exam), *state_.database, c.exam);
-    state_.requirePerson(c.person);
+    if (!state_.any("SELECT 1 FROM people WHERE code = $1 AND erased = 0", c.person))
+        throw unknown(*state_.database, "person", c.person);
     if (state_.any("SELECT 1 FROM exam_invigilators WHERE exam = $1 AND person = $2", c.exam, c.person))
         throw invalid("candidate", c.person, "nobody confirms themselves: this one is an invigilator of this exam");
     if (state_.any("SELECT 1 FROM exam_codes WHERE exam = $1 AND code = $2 AND person <> $3", c.exam, c.code, c.person))

@@ -414,6 +414,7 @@ void addStudentsExams(cli::Command& top, const std::shared_ptr<ExamOptions>& opt
     gives.callback([options] {
         const school_exam::ExamClient client(options->socket);
         client.giveUp(sittingAt(client), options->invigilator, typedSecret("confirmation code"));
+        fmt::print("given up\n");
     });
     cli::Command says = top.subcommand("status", "Who is at an exam here, and until when");
     socket(says);

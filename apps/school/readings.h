@@ -29,8 +29,8 @@ class Readings {
     /// The page for the student; `result` and `rubric` are texts of the books. Throws core::Error.
     [[nodiscard]] std::string studentReport(const school::Books& books, const std::string& exercise,
                                             const std::string& result, const std::string& rubric);
-    /// What these files of the books hold, by their hashes: whom that accuses is no other machine's word. Waits, however
-    /// many do. Throws core::Error.
+    /// What these files of the books hold, by their hashes: whom that accuses is no other machine's word. Waits,
+    /// however many do. Throws core::Error.
     [[nodiscard]] sandboxed::Contents contents(const std::vector<std::filesystem::path>& sessions);
     /// Throws core::Error.
     [[nodiscard]] sandboxed::Exercise exercise(const school::Books& books, const std::string& hash);

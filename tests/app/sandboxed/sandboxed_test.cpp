@@ -177,7 +177,9 @@ class Sandboxed : public testing::Test {
         p.attempt.sessionHashes = {assessment::workHash(session)};
         return p;
     }
-    static Proof proved(const fs::path& session) { return prove(questionOf(told(session), kRubric, {}), {{session}, exercise()}); }
+    static Proof proved(const fs::path& session) {
+        return prove(questionOf(told(session), kRubric, {}), {{session}, exercise()});
+    }
     /// Of another's settings, and with a tooth of so many bytes.
     static void forged(const std::string& settings, std::size_t toothBytes = 100) {
         session::SessionInfo info = session::SessionReader(honest()).info();

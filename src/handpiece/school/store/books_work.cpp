@@ -280,9 +280,10 @@ std::vector<PushedAttempt> Books::attemptsOf(const std::string& person, const st
 
 void Books::keepContent(const std::string& file, const std::string& inputs) {
     Transaction transaction(*state_->database, Database::Access::beside);
-    state_->run("INSERT INTO contents (file, inputs) VALUES ($1, $2) ON CONFLICT (file) DO UPDATE SET inputs = "
-                "excluded.inputs",
-                file, inputs);
+    state_->run(
+        "INSERT INTO contents (file, inputs) VALUES ($1, $2) ON CONFLICT (file) DO UPDATE SET inputs = "
+        "excluded.inputs",
+        file, inputs);
     transaction.commit();
 }
 

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <map>
+#include <random>
 
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/error.h"
@@ -320,6 +322,91 @@ TEST(MeshIo, ObjPolygonsContinuationsAndErrors) {
     EXPECT_THAT(errorOf(square + "f 1 2 x\n"), HasSubstr("\"x\" in line 5"));
     EXPECT_THAT(errorOf(square + "f 1 2 99999999999999999999\n"), HasSubstr("line 5"));
     EXPECT_THAT(errorOf("v 1 2\n", MeshFormat::obj), HasSubstr("fewer than three"));
+}
+
+/// An L of hexagonal ends, from whichever corner they begin.
+std::string lBlock(std::size_t first, bool isPly) {
+    const std::vector<std::pair<int, int>> outline{{0, 0}, {6, 0}, {6, 2}, {2, 2}, {2, 9}, {0, 9}};
+    std::vector<std::vector<int>> faces(2);
+    for (std::size_t i = 0; i < 6; ++i) {
+        faces[0].push_back(static_cast<int>((first + 6 - i) % 6));
+        faces[1].push_back(static_cast<int>((first + i) % 6 + 6));
+        const int a = static_cast<int>(i), b = static_cast<int>((i + 1) % 6);
+        faces.push_back({a, b, b + 6, a + 6});
+    }
+    std::string text = isPly ? "ply\nformat ascii 1.0\nelement vertex 12\nproperty float x\nproperty float y\nproperty "
+                               "float z\nelement face 8\nproperty list uchar int vertex_indices\nend_header\n"
+                             : "";
+    for (const int z : {0, 3})
+        for (const auto& [x, y] : outline)
+            text += fmt::format("{}{} {} {}\n", isPly ? "" : "v ", x, y, z);
+    for (const std::vector<int>& face : faces) {
+        text += isPly ? std::to_string(face.size()) : "f";
+        for (const int corner : face)
+            text += fmt::format(" {}", isPly ? corner : corner + 1);
+        text += "\n";
+    }
+    return text;
+}
+
+TEST(MeshIo, AConcavePolygonIsNoFan) {
+    for (std::size_t first = 0; first < 6; ++first)
+        for (const bool isPly : {false, true}) {
+            const TriangleMesh mesh = fromText(lBlock(first, isPly));
+            const MeshReport report = inspect(mesh);
+            EXPECT_NEAR(report.areaMm2, 142.0, 1e-9) << first;
+            EXPECT_NEAR(report.volumeMm3, 78.0, 1e-9) << first;
+            EXPECT_EQ(report.openEdges, 0u) << first;
+            EXPECT_EQ(mesh.triangles.size(), 20u);
+        }
+}
+
+// Round polygons with dents of any depth: as much area as the outline has, each triangle turned as it is, each edge of
+// the outline an edge of one triangle.
+TEST(MeshIo, EveryOutlineIsCoveredByItsTriangles) {
+    std::mt19937_64 random(test::seed());
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    for (int round = 0; round < 300; ++round) {
+        const int count = 4 + static_cast<int>(random() % 60);
+        const bool isTurned = round % 2 == 1;
+        std::string text;
+        std::vector<Vec3> points;
+        for (int i = 0; i < count; ++i) {
+            const double angle = (isTurned ? -2.0 : 2.0) * M_PI * (i + 0.8 * unit(random)) / count,
+                         radius = 0.05 + 4.0 * unit(random) * unit(random);
+            // In a plane that stands askew.
+            const double u = radius * std::cos(angle), v = radius * std::sin(angle);
+            points.emplace_back(0.6 * u, v, 0.8 * u + 0.1 * v);
+            text += fmt::format("v {} {} {}\n", points.back().x(), points.back().y(), points.back().z());
+        }
+        text += "f";
+        Vec3 whole = Vec3::Zero();
+        for (int i = 0; i < count; ++i) {
+            text += fmt::format(" {}", i + 1);
+            whole += 0.5 * points[static_cast<std::size_t>(i)].cross(points[static_cast<std::size_t>((i + 1) % count)]);
+        }
+        ReadNotes notes;
+        const TriangleMesh mesh = fromText(text + "\n", MeshFormat::obj, &notes);
+        EXPECT_THAT(notes, testing::IsEmpty());
+        ASSERT_EQ(mesh.triangles.size(), static_cast<std::size_t>(count) - 2);
+        double sum = 0.0;
+        std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
+        for (const Triangle& t : mesh.triangles) {
+            const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+            const Vec3 own = 0.5 * (b - a).cross(c - a);
+            EXPECT_GE(own.dot(whole), -1e-9 * whole.squaredNorm()) << round;
+            sum += own.norm();
+            for (std::size_t k = 0; k < 3; ++k)
+                ++edges[{t[k], t[(k + 1) % 3]}];
+        }
+        EXPECT_NEAR(sum, whole.norm(), 1e-9 * whole.norm()) << round << ", seed " << test::seed();
+        for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i)
+            EXPECT_EQ((edges[{i, (i + 1) % static_cast<std::uint32_t>(count)}]), 1) << round;
+    }
+    // One that crosses itself is told.
+    ReadNotes notes;
+    (void)fromText("v 0 0 0\nv 4 0 0\nv 0 3 0\nv 4 2 0\nv 2 -2 0\nf 1 2 3 4 5\n", MeshFormat::obj, &notes);
+    EXPECT_THAT(notes, testing::Contains(HasSubstr("crosses itself")));
 }
 
 TEST(MeshIo, TextCutShortIsRefusedOrTold) {

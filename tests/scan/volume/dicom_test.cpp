@@ -7,6 +7,7 @@
 namespace handpiece::volume {
 namespace {
 
+using namespace std::string_literals;
 using test::DicomMaker;
 using test::dicomSeries;
 using test::errorOf;
@@ -363,6 +364,67 @@ TEST_F(Dicom, EnhancedFramesAreSortedByTheirOwnPlaces) {
     const Scan scan = readScan(folder_ / "enhanced.dcm");
     expectOurValues(scan.volume, 4);
     EXPECT_EQ(scan.volume.grid.spacingMm, core::Vec3(0.25, 0.5, 2.0));
+}
+
+// As many dental CBCT devices write them: one file, one place for all.
+TEST_F(Dicom, FramesOfOnePlaceLieAsTheHeaderSays) {
+    const auto written = [&](const std::string& between, const std::string& more, bool isBackward) {
+        DicomMaker d;
+        d.frames = 4;
+        d.between = between;
+        d.enhanced = more;
+        for (int at = 0; at < 4; ++at)
+            for (int n = 0; n < 30; ++n)
+                d.pixels.push_back(static_cast<std::int16_t>(100 * (isBackward ? 3 - at : at) + n / 5 * 10 + n % 5));
+        test::writeBytes(folder_ / "frames.dcm", d.bytes());
+    };
+    const DicomMaker maker;
+    const std::string thickness = maker.element(0x18, 0x50, "DS", "2"),
+                      offsets = maker.element(0x3004, 0xc, "DS", "0\\2\\4\\6");
+    struct Case {
+        std::string between, more, by;
+        bool isBackward;
+    };
+    for (const Case& one :
+         {Case{"", thickness, "SliceThickness", false}, Case{"2", "", "SpacingBetweenSlices", false},
+          Case{"2", maker.element(0x18, 0x50, "DS", "3"), "SpacingBetweenSlices", false},
+          Case{"-2", "", "SpacingBetweenSlices", true},
+          Case{"", maker.element(0x18, 0x50, "DS", "3") + offsets, "GridFrameOffsetVector", false},
+          Case{"", maker.element(0x3004, 0xc, "DS", "0\\-2\\-4\\-6"), "GridFrameOffsetVector", true}}) {
+        written(one.between, one.more, one.isBackward);
+        const Scan scan = readScan(folder_ / "frames.dcm");
+        EXPECT_EQ(scan.volume.grid.spacingMm, core::Vec3(0.25, 0.5, 2.0)) << one.by;
+        expectOurValues(scan.volume, 4);
+        EXPECT_THAT(scan.series.notes, Contains(HasSubstr(one.by)));
+    }
+    // Nothing tells it, or what tells it is of another number of frames.
+    for (const std::string& more : {std::string(), maker.element(0x3004, 0xc, "DS", "0\\2\\4")}) {
+        written("", more, false);
+        EXPECT_THAT(error(), HasSubstr("same place"));
+    }
+}
+
+// An archive's little picture, packed, in a sequence of undefined length: its bytes are no elements.
+TEST_F(Dicom, APackedIconIsPassedOver) {
+    auto series = dicomSeries(8);
+    for (DicomMaker& d : series) {
+        const auto head = [&](std::uint32_t group, std::uint32_t number, std::uint32_t length) {
+            return d.number(group, 2, false) + d.number(number, 2, false) + d.number(length, 4, false);
+        };
+        const std::uint32_t open = 0xffffffffu;
+        const std::string packed = d.number(0x7fe0, 2, false) + d.number(0x10, 2, false) + "OB" + std::string(2, '\0') +
+                                   d.number(open, 4, false) + head(0xfffe, 0xe000, 0) + head(0xfffe, 0xe000, 8) +
+                                   "\x01\x02\xff\xfe\x00\xe0zz"s + head(0xfffe, 0xe0dd, 0);
+        d.enhanced = d.number(0x88, 2, false) + d.number(0x200, 2, false) + "SQ" + std::string(2, '\0') +
+                     d.number(open, 4, false) + head(0xfffe, 0xe000, open) + d.us(0x10, 8) + packed +
+                     head(0xfffe, 0xe00d, 0) + head(0xfffe, 0xe0dd, 0);
+    }
+    writeSeries(series, folder_);
+    expectOurValues(readScan(folder_).volume, 8);
+    // Cut off in the middle of it, it is told.
+    const std::string whole = series[4].bytes();
+    test::writeBytes(folder_ / "IM5", whole.substr(0, whole.find("zz") + 1));
+    EXPECT_THAT(error(), HasSubstr("IM5"));
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <tiffio.h>
 #include <zip.h>
 
+#include <array>
+#include <map>
+
 #include "handpiece/scan/volume/files.h"
 #include "scan_support.h"
 
@@ -386,6 +389,145 @@ TEST_F(ScanFiles, TiffPagesOfFloatsAndOfImageJ) {
     EXPECT_FALSE(findSeries(folder_)[0].thumbnail.empty());
     test::cutFile(folder_ / "stack.tif", 0.5);
     EXPECT_THAT(error(), HasSubstr("stack.tif"));
+}
+
+// ImageJ's large stacks: one directory, all pages one after another behind it.
+TEST_F(ScanFiles, TiffOfOneDirectoryAndManyPages) {
+    constexpr int kWidth = 20, kHeight = 18, kPages = 5;
+    for (const bool isBig : {false, true}) {
+        const fs::path file = folder_ / "stack.tif";
+        TIFF* tiff = TIFFOpen(file.c_str(), isBig ? "wb" : "wl");
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, kWidth);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, kHeight);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+        TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, kHeight);
+        TIFFSetField(tiff, TIFFTAG_IMAGEDESCRIPTION,
+                     "ImageJ=1.53t\nimages=5\nslices=5\nunit=mm\nspacing=0.3\nloop=false\n");
+        TIFFSetField(tiff, TIFFTAG_XRESOLUTION, 10.0);
+        TIFFSetField(tiff, TIFFTAG_YRESOLUTION, 10.0);
+        std::string pixels;
+        for (int n = 0; n < kWidth * kHeight * kPages; ++n) {
+            const int value = 3 * n;
+            pixels += static_cast<char>(isBig ? value >> 8 : value & 0xff);
+            pixels += static_cast<char>(isBig ? value & 0xff : value >> 8);
+        }
+        TIFFWriteRawStrip(tiff, 0, pixels.data(), static_cast<tmsize_t>(pixels.size()));
+        TIFFClose(tiff);
+        const Volume v = readScan(folder_).volume;
+        ASSERT_EQ(v.grid.size, (std::array{kWidth, kHeight, kPages})) << isBig;
+        EXPECT_TRUE(v.grid.spacingMm.isApprox(core::Vec3(0.1, 0.1, 0.3), 1e-6));
+        for (int n = 0; n < kWidth * kHeight * kPages; ++n)
+            ASSERT_EQ(v.values[static_cast<std::size_t>(n)], static_cast<float>(3 * n)) << isBig;
+        // Of more pages than there are it is told.
+        std::string odd = test::readBytes(file);
+        odd.replace(odd.find("images=5"), 8, "images=9");
+        test::writeBytes(file, odd);
+        EXPECT_THAT(error(), HasSubstr("too short"));
+    }
+}
+
+/// Where TIFF 6.0 (tag 274) says that a file's first row and first column are seen.
+struct Lies {
+    bool rowsAreColumns, rowsBackward, columnsBackward;
+    [[nodiscard]] std::pair<int, int> seen(int row, int column, int rows, int columns) const {
+        const int r = rowsBackward ? rows - 1 - row : row, c = columnsBackward ? columns - 1 - column : column;
+        return rowsAreColumns ? std::pair(r, c) : std::pair(c, r);
+    }
+};
+constexpr std::array<Lies, 9> kLies{{{false, false, false},
+                                     {false, false, false},  // top, left
+                                     {false, false, true},   // top, right
+                                     {false, true, true},    // bottom, right
+                                     {false, true, false},   // bottom, left
+                                     {true, false, false},   // left, top
+                                     {true, true, false},    // right, top
+                                     {true, true, true},     // right, bottom
+                                     {true, false, true}}};  // left, bottom
+
+TEST_F(ScanFiles, ATiffThatLiesOtherwiseIsNoMirrorImage) {
+    constexpr int kWidth = 20, kHeight = 18;  // as seen
+    const auto grey = [](int x, int y, int k) { return static_cast<std::uint8_t>(7 * k + 9 * y + x); };
+    for (int tag = 0; tag <= 9; ++tag) {
+        const Lies lies = kLies[static_cast<std::size_t>(tag > 8 ? 0 : tag)];
+        const int columns = lies.rowsAreColumns ? kHeight : kWidth, rows = lies.rowsAreColumns ? kWidth : kHeight;
+        TIFF* tiff = TIFFOpen((folder_ / "stack.tif").c_str(), "w");
+        for (int k = 0; k < 3; ++k) {
+            TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, columns);
+            TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, rows);
+            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+            TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1);
+            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+            if (tag >= 1 && tag <= 8) TIFFSetField(tiff, TIFFTAG_ORIENTATION, tag);
+            for (int r = 0; r < rows; ++r) {
+                std::vector<std::uint8_t> line;
+                for (int c = 0; c < columns; ++c) {
+                    const auto [x, y] = lies.seen(r, c, rows, columns);
+                    line.push_back(grey(x, y, k));
+                }
+                TIFFWriteScanline(tiff, line.data(), static_cast<std::uint32_t>(r), 0);
+            }
+            TIFFWriteDirectory(tiff);
+        }
+        TIFFClose(tiff);
+        ReadSettings settings;
+        settings.spacingMm = core::Vec3::Ones();
+        const Volume v = readScan(folder_, settings).volume;
+        ASSERT_EQ(v.grid.size, (std::array{kWidth, kHeight, 3})) << tag;
+        for (int k = 0; k < 3; ++k)
+            for (int y = 0; y < kHeight; ++y)
+                for (int x = 0; x < kWidth; ++x)
+                    ASSERT_EQ(v.values[v.grid.index(x, y, k)], static_cast<float>(grey(x, y, k))) << tag;
+    }
+}
+
+TEST_F(ScanFiles, AJpegThatLiesOtherwiseIsNoMirrorImage) {
+    const Volume sample = test::sampleVolume({20, 17, 3}, 0, 250);
+    writeScan(sample, folder_, ScanFormat::jpeg);
+    ReadSettings settings;
+    settings.spacingMm = core::Vec3::Ones();
+    const Volume upright = readScan(folder_, settings).volume;
+    const std::vector<std::string> files{"slice_0001.jpg", "slice_0002.jpg", "slice_0003.jpg"};
+    std::map<std::string, std::string> plain;
+    for (const std::string& name : files)
+        plain[name] = test::readBytes(folder_ / name);
+    for (int tag = 1; tag <= 9; ++tag)
+        for (const bool isBig : {false, true}) {
+            const auto number = [&](std::uint32_t value, int bytes) {
+                std::string text;
+                for (int i = 0; i < bytes; ++i)
+                    text += static_cast<char>(value >> 8 * (isBig ? bytes - 1 - i : i));
+                return text;
+            };
+            const std::string exif = std::string("Exif\0\0", 6) + (isBig ? "MM" : "II") + number(42, 2) + number(8, 4) +
+                                     number(2, 2) + number(0x0100, 2) + number(3, 2) + number(1, 4) + number(20, 2) +
+                                     number(0, 2) + number(0x0112, 2) + number(3, 2) + number(1, 4) +
+                                     number(static_cast<std::uint32_t>(tag), 2) + number(0, 2) + number(0, 4);
+            const std::size_t size = exif.size() + 2;
+            const std::string segment =
+                std::string("\xff\xe1") + static_cast<char>(size >> 8) + static_cast<char>(size) + exif;
+            for (const std::string& name : files)
+                test::writeBytes(folder_ / name, plain[name].substr(0, 2) + segment + plain[name].substr(2));
+            const Lies lies = kLies[static_cast<std::size_t>(tag > 8 ? 0 : tag)];
+            const Volume v = readScan(folder_, settings).volume;
+            ASSERT_EQ(v.grid.size, (lies.rowsAreColumns ? std::array{17, 20, 3} : std::array{20, 17, 3})) << tag;
+            for (int k = 0; k < 3; ++k)
+                for (int r = 0; r < 17; ++r)
+                    for (int c = 0; c < 20; ++c) {
+                        const auto [x, y] = lies.seen(r, c, 17, 20);
+                        ASSERT_EQ(v.values[v.grid.index(x, y, k)], upright.values[upright.grid.index(c, r, k)])
+                            << tag << isBig;
+                    }
+        }
+    // A segment that is cut off anywhere is as none.
+    const std::string whole = test::readBytes(folder_ / files[0]);
+    for (std::size_t at = 4; at < 44; ++at) {
+        std::string odd = whole;
+        odd[at] = static_cast<char>(odd[at] ^ 0x5a);
+        test::writeBytes(folder_ / files[0], odd);
+        (void)error();
+    }
 }
 
 TEST_F(ScanFiles, DicomdirOfTheFilesItLists) {

@@ -91,6 +91,19 @@ TEST(Spreadsheet, ReadsWhatSpreadsheetProgramsWrite) {
               "\xf0\xa0\xae\xb7");
 }
 
+// A list out of a Japanese Excel: "Mori Ai" and a class "2A" in Shift_JIS, a name in half-width katakana.
+TEST(Spreadsheet, ShiftJisIsReadAndTold) {
+    const Roster roster =
+        peopleList("code,name,class\ns1,\x90\x58 \x88\xa4,2A\x91\x67\ns2,\xb1\xb2,2A\x91\x67\n", "list.csv");
+    ASSERT_EQ(roster.people.size(), 2u);
+    EXPECT_EQ(*roster.people[0].name, "\u68ee \u611b");
+    EXPECT_EQ(*roster.people[1].name, "\uff71\uff72");
+    ASSERT_EQ(roster.classes.size(), 1u);
+    EXPECT_EQ(roster.classes[0].name, "2A\u7d44");
+    EXPECT_THAT(roster.notices, testing::Contains(testing::HasSubstr("Shift_JIS")));
+    EXPECT_THAT(peopleList("code,name\ns1,\u68ee\n", "list.csv").notices, testing::IsEmpty());
+}
+
 TEST(Spreadsheet, SaysFileLineColumnAndWhatToDo) {
     const std::pair<std::string, std::vector<std::string>> cases[] = {
         {"", {"list.csv, line 1", "nothing in it"}},
@@ -100,6 +113,10 @@ TEST(Spreadsheet, SaysFileLineColumnAndWhatToDo) {
         {"code,name\ns1,\"Mori\ns2,Sato\n", {"list.csv, line 2", "never closed"}},
         {"code,name\ns1,\"Mori\" Aiko\n", {"list.csv, line 2", "behind a closed quote"}},
         {"code,name\ns1,Mo\xf1i\n", {"list.csv, line 2", "f1 is no UTF-8", "CSV UTF-8"}},
+        {"code,name\ns1,Ren\xe9"
+         "e\n",
+         {"list.csv, line 2", "e9 is no UTF-8", "CSV UTF-8"}},
+        {"code,name\ns1,M\xfcller\n", {"list.csv, line 2", "fc is no UTF-8", "CSV UTF-8"}},
         {"code,name\ns1,a\ns1,b\n", {"list.csv, line 3, column name", "list.csv, line 2"}},
         {"code,code\ns1,s2\n", {"two columns \"code\""}},
         {"code,name\ns1,Mori,Aiko\n", {"list.csv, line 2", "\"Aiko\" stands in column 3"}},
@@ -262,7 +279,7 @@ Files school() {
          "sourcedId,status,dateLastModified,enabledUser,orgSourcedIds,role,username,userIds,givenName,familyName,"
          "middleName,identifier,email,sms,phone,agentSourcedIds,grades,password\n"
          "u-t,,,true,org-1,teacher,sato.y,{LDAP:sato},Yuki,Sato,,T1,sato@school.example,,,,,\n"
-         "u-1,,,true,org-1,student,ito.i,,Ida,Ito,,S1,,,,u-p,14,\n"
+         "u-1,,,TRUE,org-1,student,ito.i,,Ida,Ito,,S1,,,,u-p,14,\n"
          "u-2,,,true,org-1,student,ono.j,,Jun,Ono,K.,S2,,,,,14,secret\n"
          "u-p,,,true,org-1,parent,ito.p,,Paul,Ito,,,,,,u-1,,\n"
          "u-a,,,true,org-1,administrator,adm,,Ada,Min,,,,,,,,\n"},
@@ -412,7 +429,7 @@ TEST(OneRoster, SaysFileLineAndColumnOfWhatIsWrong) {
                       HasSubstr("1.1")));
     EXPECT_THAT(wrong("manifest.csv", "oneroster.version,1.1\n", ""), HasSubstr("does not say of which version"));
     EXPECT_THAT(wrong("manifest.csv", "file.users,bulk", "file.users,all"), HasSubstr("absent, bulk or delta"));
-    EXPECT_THAT(wrong("users.csv", "u-1,,,true", "u-1,,,yes"),
+    EXPECT_THAT(wrong("users.csv", "u-1,,,TRUE", "u-1,,,yes"),
                 AllOf(HasSubstr("users.csv, line 3, column enabledUser"), HasSubstr("'yes'")));
     EXPECT_THAT(wrong("users.csv", "student,ito.i", "pupil,ito.i"),
                 AllOf(HasSubstr("line 3, column role"), HasSubstr("'pupil'")));

@@ -18,6 +18,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/base/geometry/polygons.h"
 
 namespace handpiece::geometry::formats {
 
@@ -183,10 +184,11 @@ class VertexMerger {
     std::size_t mask_ = 0;
 };
 
-/// Appends a polygon as a fan about its first corner; fewer than three corners give nothing.
-inline void addFan(std::vector<Triangle>& triangles, std::span<const std::uint32_t> corners) {
-    for (std::size_t i = 2; i < corners.size(); ++i)
-        triangles.push_back({corners[0], corners[i - 1], corners[i]});
+/// Cuts what is concave, and says what could not be.
+inline void settle(const Polygons& polygons, TriangleMesh& mesh, const Source& source) {
+    if (const std::size_t crossing = polygons.settle(mesh).crossing; crossing > 0)
+        source.note(fmt::format("{} {} itself: it is cut as a fan, which leaves its outline", crossing,
+                                crossing == 1 ? "polygon crosses" : "polygons cross"));
 }
 
 }  // namespace handpiece::geometry::formats

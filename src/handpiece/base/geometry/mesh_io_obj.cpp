@@ -56,6 +56,7 @@ TriangleMesh readObj(const Source& source) {
     const std::string_view text = source.text();
     std::string storage;
     std::vector<std::uint32_t> corners;
+    Polygons polygons;
     std::uint64_t lineNumber = 0, highest = 0, highestLine = 0;
     // A file that is cut short ends in the middle of a line, seldom where one cannot tell.
     const bool endsOpen = text.back() != '\n' && text.back() != '\r';
@@ -110,7 +111,7 @@ TriangleMesh readObj(const Source& source) {
             if (corners.size() < 3)
                 source.fail(fmt::format("the face in line {} has fewer than three corners", lineNumber),
                             "export the mesh again");
-            addFan(mesh.triangles, corners);
+            polygons.add(mesh.triangles, corners);
             if (mesh.triangles.size() > kMaxFaces)
                 source.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
         }
@@ -121,6 +122,7 @@ TriangleMesh readObj(const Source& source) {
             fmt::format("the face in line {} names vertex {} of {}", highestLine, highest, mesh.vertices.size()),
             "export the mesh again");
     bad.check(source, "vertices", "vertex");
+    settle(polygons, mesh, source);
     std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t)

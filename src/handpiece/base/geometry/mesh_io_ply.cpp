@@ -170,6 +170,7 @@ class Reader {
             source_.fail(
                 fmt::format("face {} names vertex {} of {}", highestFace_ + 1, highest_, mesh_.vertices.size()),
                 "export the mesh again");
+        settle(polygons_, mesh_, source_);
         if (header_.encoding == Encoding::ascii && !Words::isSpace(source_.text().back()))
             source_.note(fmt::format("the last line has no end: see that face {} is whole", mesh_.triangles.size()));
         return std::move(mesh_);
@@ -257,7 +258,7 @@ class Reader {
                     corners.push_back(index);
                 });
             }
-            addFan(mesh_.triangles, corners);
+            polygons_.add(mesh_.triangles, corners);
             if (mesh_.triangles.size() > kMaxFaces)
                 source_.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
         }
@@ -267,6 +268,7 @@ class Reader {
     Header header_;
     Body body_;
     TriangleMesh mesh_;
+    Polygons polygons_;
     BadCoordinates bad_;
     std::uint64_t highest_ = 0, highestFace_ = 0;
 };

@@ -116,6 +116,20 @@ class Walker {
         }
         return out;
     }
+    /// However many; none where one of them is no number.
+    std::vector<double> allDecimals(const Element& e) {
+        std::string all(std::min<std::size_t>(e.length, 1u << 20), '\0');
+        all.resize(input_.readAt(e.value, all.data(), all.size()));
+        std::vector<double> out;
+        for (std::string_view rest = trimmed(all); !rest.empty() && out.size() < kMaxFrames;) {
+            const std::size_t stop = std::min(rest.find('\\'), rest.size());
+            const auto v = numberOf(trimmed(rest.substr(0, stop)));
+            if (!v || !std::isfinite(*v)) return {};
+            out.push_back(*v);
+            rest.remove_prefix(std::min(stop + 1, rest.size()));
+        }
+        return out;
+    }
     std::optional<double> decimal(const Element& e) {
         const auto one = decimals<1>(e);
         return one ? std::optional((*one)[0]) : std::nullopt;
@@ -144,6 +158,13 @@ class Walker {
                 pixels(e);
                 isDone_ = true;
                 return end;
+            }
+            // Of undefined length and no sequence: packed pixels, an icon's for instance, whose bytes are no elements.
+            const bool isPacked =
+                e.length == kUndefined && (e.tag == kPixels || (header_.isExplicit && e.vr != kSq && e.vr != kUn));
+            if (isPacked) {
+                at = pastFragments(e);
+                continue;
             }
             const bool isSequence = e.vr == std::array{'S', 'Q'} || e.length == kUndefined || isKnownSequence(e.tag);
             if (isSequence) {
@@ -174,6 +195,19 @@ class Walker {
             at = next;
         }
         return at;
+    }
+
+    static constexpr std::array<char, 2> kSq{'S', 'Q'}, kUn{'U', 'N'};
+
+    std::uint64_t pastFragments(const Element& e) {
+        for (std::uint64_t at = e.value; at + 8 <= input_.size();) {
+            const Element item = element(at, header_.isExplicit, header_.isBigEndian);
+            if (item.tag == kSequenceEnd) return item.value;
+            if (item.tag != kItem || item.length == kUndefined)
+                throw wrong("packed pixel data in its header is damaged", "copy or export it again");
+            at = item.value + item.length;
+        }
+        throw ends();
     }
 
     static bool isKnownSequence(std::uint32_t t) {
@@ -260,6 +294,9 @@ class Walker {
             case tag(0x0028, 0x2110):
                 header_.isLossy = text(e) == "01";
                 break;
+            case tag(0x3004, 0x000c):
+                header_.gridOffsetsMm = allDecimals(e);
+                break;
             case tag(0x7fe0, 0x0008):
             case tag(0x7fe0, 0x0009):
                 header_.isFloat = true;
@@ -336,8 +373,31 @@ class Walker {
 
 }  // namespace
 
+const char* DicomHeader::stepsBy() const {
+    const auto isThere = [](const std::optional<double>& mm) { return mm && *mm != 0.0; };
+    const bool hasOwn = std::any_of(frame.begin(), frame.end(), [](const DicomPlace& one) { return one.positionMm; });
+    if (frames < 2 || hasOwn || !place.positionMm || !place.orientation) return nullptr;
+    return gridOffsetsMm.size() == static_cast<std::size_t>(frames) ? "GridFrameOffsetVector"
+           : isThere(place.betweenMm)                               ? "SpacingBetweenSlices"
+           : isThere(place.thicknessMm)                             ? "SliceThickness"
+                                                                    : nullptr;
+}
+
 DicomPlace DicomHeader::placeOf(int index) const {
     DicomPlace all = place;
+    if (index > 0 && stepsBy() != nullptr) {
+        const auto at = static_cast<std::size_t>(index);
+        const double alongMm =
+            at < gridOffsetsMm.size() && gridOffsetsMm.size() == static_cast<std::size_t>(frames)
+                ? gridOffsetsMm[at] - gridOffsetsMm[0]
+                : index * (place.betweenMm.value_or(0.0) != 0.0 ? *place.betweenMm : place.thicknessMm.value_or(0.0));
+        const std::array<double, 6>& o = *place.orientation;
+        // Along a row by down a column.
+        const std::array<double, 3> normal{o[1] * o[5] - o[2] * o[4], o[2] * o[3] - o[0] * o[5],
+                                           o[0] * o[4] - o[1] * o[3]};
+        for (std::size_t k = 0; k < 3; ++k)
+            (*all.positionMm)[k] += alongMm * normal[k];
+    }
     if (index < 0 || static_cast<std::size_t>(index) >= frame.size()) return all;
     const DicomPlace& own = frame[static_cast<std::size_t>(index)];
     if (own.positionMm) all.positionMm = own.positionMm;

@@ -30,9 +30,10 @@ struct DicomHeader {
     bool isSigned = false, isBigEndian = false, isExplicit = true;
     bool hasBurnedInText = false, isLossy = false, isSecondaryCapture = false, isOverview = false, isFloat = false;
     std::optional<int> instance;
-    DicomPlace place;                ///< of the file, and what its frames share
-    std::vector<DicomPlace> frame;   ///< what they have of their own
-    std::vector<std::string> files;  ///< of a DICOMDIR
+    DicomPlace place;                   ///< of the file, and what its frames share
+    std::vector<DicomPlace> frame;      ///< what they have of their own
+    std::vector<std::string> files;     ///< of a DICOMDIR
+    std::vector<double> gridOffsetsMm;  ///< of frames along the normal (GridFrameOffsetVector)
 
     bool hasPixels = false, isEncapsulated = false;
     std::uint64_t pixelAt = 0, pixelBytes = 0;
@@ -42,6 +43,9 @@ struct DicomHeader {
     std::vector<Fragment> fragments;          ///< of encapsulated pixels, without the offset table
     std::vector<std::uint64_t> frameOffsets;  ///< the offset table
 
+    /// What tells how far a frame lies from the next where all have one place: an element's name; null where each has
+    /// its own, or nothing does.
+    [[nodiscard]] const char* stepsBy() const;
     [[nodiscard]] DicomPlace placeOf(int index) const;
 };
 

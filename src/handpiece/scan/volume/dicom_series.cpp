@@ -251,6 +251,8 @@ class Assembly {
             notes.push_back(
                 "these are pictures of a screen or a film (secondary capture): grey values and burned-in text cannot "
                 "be trusted");
+        if (const char* by = group_.slices[0].header->stepsBy())
+            notes.push_back(fmt::format("all its slices have one place: they are taken to lie as its {} says", by));
         if (any(&DicomHeader::isLossy)) notes.push_back("the values were compressed with loss");
         if (any(&DicomHeader::isOverview)) notes.push_back("this is an overview picture (localizer)");
         if (group_.slices[0].header->photometric == "MONOCHROME1") notes.push_back("low values are meant to be bright");

@@ -7,6 +7,7 @@
 
 #include <jpeglib.h>
 
+#include "handpiece/scan/volume/picture_orientation.h"
 #include "handpiece/scan/volume/pictures.h"
 
 namespace handpiece::volume {
@@ -36,9 +37,15 @@ jpeg_error_mgr* quiet(Problem& problem) {
     return &problem.manager;
 }
 
+/// As the picture lies in the file.
+struct Lies {
+    int columns = 0, rows = 0, orientation = 1;
+    bool isColour = false;
+};
+
 /// Into `to` when there is one; returns what is wrong, or null.
-const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::vector<std::byte>& data,
-                   PictureInfo& info, unsigned char* line, float* to) {
+const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::vector<std::byte>& data, Lies& lies,
+                   unsigned char* line, float* to) {
     state.err = quiet(problem);
     if (setjmp(problem.out) != 0) {
         jpeg_destroy_decompress(&state);
@@ -46,15 +53,18 @@ const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::v
     }
     jpeg_create_decompress(&state);
     jpeg_mem_src(&state, reinterpret_cast<const unsigned char*>(data.data()), static_cast<unsigned long>(data.size()));
+    if (!to) jpeg_save_markers(&state, JPEG_APP0 + 1, 0xffff);
     jpeg_read_header(&state, TRUE);
     if (!to) {
-        info.columns = static_cast<int>(state.image_width);
-        info.rows = static_cast<int>(state.image_height);
-        info.isColour = state.num_components != 1;
+        lies.columns = static_cast<int>(state.image_width);
+        lies.rows = static_cast<int>(state.image_height);
+        lies.isColour = state.num_components != 1;
+        for (jpeg_saved_marker_ptr one = state.marker_list; one && lies.orientation == 1; one = one->next)
+            lies.orientation = exifOrientation({one->data, one->data_length});
         jpeg_destroy_decompress(&state);
         return nullptr;
     }
-    if (static_cast<int>(state.image_width) != info.columns || static_cast<int>(state.image_height) != info.rows) {
+    if (static_cast<int>(state.image_width) != lies.columns || static_cast<int>(state.image_height) != lies.rows) {
         jpeg_destroy_decompress(&state);
         return "its size changed";
     }
@@ -103,22 +113,41 @@ const char* encode(jpeg_compress_struct& state, Problem& problem, const std::uin
 
 }  // namespace
 
-PictureInfo jpegInfo(Input& input) {
-    const std::vector<std::byte> data = wholeOf(input);
-    PictureInfo info;
+namespace {
+Lies liesIn(Input& input, const std::vector<std::byte>& data) {
+    Lies lies;
     jpeg_decompress_struct state{};
     Problem problem{};
-    if (const char* why = decode(state, problem, data, info, nullptr, nullptr)) throw damagedPicture(input, why);
+    if (const char* why = decode(state, problem, data, lies, nullptr, nullptr)) throw damagedPicture(input, why);
+    return lies;
+}
+}  // namespace
+
+PictureInfo jpegInfo(Input& input) {
+    const Lies lies = liesIn(input, wholeOf(input));
+    const bool isTransposed = Orientation(lies.orientation).isTransposed();
+    PictureInfo info;
+    info.columns = isTransposed ? lies.rows : lies.columns, info.rows = isTransposed ? lies.columns : lies.rows;
+    info.isColour = lies.isColour;
     return info;
 }
 
 void readJpeg(Input& input, const PictureInfo& info, float* to) {
     const std::vector<std::byte> data = wholeOf(input);
-    std::vector<unsigned char> line(static_cast<std::size_t>(info.columns));
-    PictureInfo same = info;
+    Lies lies = liesIn(input, data);
+    const Orientation orientation(lies.orientation);
+    const bool isSame = orientation.isTransposed() ? lies.rows == info.columns && lies.columns == info.rows
+                                                   : lies.columns == info.columns && lies.rows == info.rows;
+    if (!isSame) throw damagedPicture(input, "its size changed");
+    std::vector<unsigned char> line(static_cast<std::size_t>(lies.columns));
+    std::vector<float> turned;
+    if (!orientation.isUpright())
+        turned.resize(static_cast<std::size_t>(lies.columns) * static_cast<std::size_t>(lies.rows));
+    float* const into = turned.empty() ? to : turned.data();
     jpeg_decompress_struct state{};
     Problem problem{};
-    if (const char* why = decode(state, problem, data, same, line.data(), to)) throw damagedPicture(input, why);
+    if (const char* why = decode(state, problem, data, lies, line.data(), into)) throw damagedPicture(input, why);
+    if (!turned.empty()) orientation.turn(turned.data(), lies.columns, lies.rows, to);
 }
 
 std::vector<std::byte> jpegBytes(std::span<const std::uint8_t> grey, int columns, int rows) {

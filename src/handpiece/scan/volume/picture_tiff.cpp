@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "handpiece/scan/volume/header_text.h"
+#include "handpiece/scan/volume/picture_orientation.h"
 #include "handpiece/scan/volume/pictures.h"
 #include "handpiece/scan/volume/samples.h"
 
@@ -91,16 +92,19 @@ Tiff open(Stream& stream, const char* mode) {
 }
 
 struct Page {
-    int columns = 0, rows = 0;
+    int columns = 0, rows = 0;  ///< as they lie in the file
+    Orientation orientation{};
     SampleType type = SampleType::u8;
     std::uint16_t samples = 1, bits = 8, photometric = PHOTOMETRIC_MINISBLACK;
     bool isReduced = false;
+    [[nodiscard]] int seenColumns() const { return orientation.isTransposed() ? rows : columns; }
+    [[nodiscard]] int seenRows() const { return orientation.isTransposed() ? columns : rows; }
 };
 
 Page pageOf(TIFF* tiff, const Input& input) {
     Page page;
     std::uint32_t columns = 0, rows = 0, kind = 0;
-    std::uint16_t format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG;
+    std::uint16_t format = SAMPLEFORMAT_UINT, planar = PLANARCONFIG_CONTIG, lies = ORIENTATION_TOPLEFT;
     TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &columns);
     TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &rows);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &page.bits);
@@ -109,6 +113,8 @@ Page pageOf(TIFF* tiff, const Input& input) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planar);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SUBFILETYPE, &kind);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &page.photometric);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &lies);
+    page.orientation = Orientation(lies);
     if (columns < 1 || rows < 1 || columns > kMaxSide || rows > kMaxSide)
         throw damagedPicture(input, fmt::format("its size is {} x {}", columns, rows));
     page.columns = static_cast<int>(columns);
@@ -136,19 +142,41 @@ Page pageOf(TIFF* tiff, const Input& input) {
     return page;
 }
 
-/// ImageJ writes the spacing of its stacks as text and resolution; only its own keys are looked for.
-std::optional<core::Vec3> imageJSpacing(TIFF* tiff) {
+/// What ImageJ says of a stack in its description; empty where there is none. Only its own keys are looked for.
+std::string_view imageJValue(TIFF* tiff, std::string_view key) {
     const char* text = nullptr;
-    float x = 0.0f, y = 0.0f;
     if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) != 1 || !text) return {};
     const std::string_view description(text);
-    if (description.rfind("ImageJ=", 0) != 0) return {};
-    const auto value = [&](std::string_view key) -> std::string_view {
-        const std::size_t at = description.find(key);
-        if (at == std::string_view::npos) return {};
-        const std::size_t begin = at + key.size();
-        return trimmed(description.substr(begin, description.find('\n', begin) - begin));
-    };
+    if (!description.starts_with("ImageJ=")) return {};
+    const std::size_t at = description.find(key);
+    if (at == std::string_view::npos) return {};
+    const std::size_t begin = at + key.size();
+    return trimmed(description.substr(begin, description.find('\n', begin) - begin));
+}
+
+/// ImageJ writes large stacks with one directory, all pages one after another behind it.
+struct RawStack {
+    std::uint64_t at = 0;  ///< of the first page
+    int pages = 0;
+};
+std::optional<RawStack> rawStackOf(TIFF* tiff, const Page& page, const Input& input) {
+    const double images = numberOf(imageJValue(tiff, "\nimages=")).value_or(1.0);
+    std::uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    if (!(images > 1.0) || compression != COMPRESSION_NONE || TIFFIsTiled(tiff) != 0 || page.samples != 1) return {};
+    if (images > kMaxPages) throw damagedPicture(input, "it claims too many pages");
+    const RawStack stack{TIFFGetStrileOffset(tiff, 0), static_cast<int>(images)};
+    const std::uint64_t each =
+        static_cast<std::uint64_t>(page.columns) * static_cast<std::uint64_t>(page.rows) * bytesOf(page.type);
+    if (stack.at > input.size() || static_cast<std::uint64_t>(stack.pages) > (input.size() - stack.at) / each)
+        throw damagedPicture(input, fmt::format("it says that it has {} pages, and is too short for them", images));
+    return stack;
+}
+
+/// It writes their spacing as text and resolution.
+std::optional<core::Vec3> imageJSpacing(TIFF* tiff) {
+    float x = 0.0f, y = 0.0f;
+    const auto value = [tiff](std::string_view key) { return imageJValue(tiff, key); };
     const std::string_view unit = value("\nunit=");
     const double mm = unit == "mm"   ? 1.0
                       : unit == "cm" ? 10.0
@@ -192,7 +220,7 @@ void toGrey(const Page& page, const std::uint16_t* const palette[3], const std::
     }
 }
 
-void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
+void readAsItLies(TIFF* tiff, Stream& stream, const Page& page, float* to) {
     const auto cut = [&] {
         return damagedPicture(*stream.input, stream.text.empty() ? "its pixel data is truncated" : stream.text);
     };
@@ -230,6 +258,27 @@ void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
         }
 }
 
+void readPage(TIFF* tiff, Stream& stream, const Page& page, float* to) {
+    if (page.orientation.isUpright()) return readAsItLies(tiff, stream, page, to);
+    std::vector<float> lies(static_cast<std::size_t>(page.columns) * static_cast<std::size_t>(page.rows));
+    readAsItLies(tiff, stream, page, lies.data());
+    page.orientation.turn(lies.data(), page.columns, page.rows, to);
+}
+
+void readRaw(TIFF* tiff, Input& input, const RawStack& stack, const Page& page, int index, float* to) {
+    const std::size_t count = static_cast<std::size_t>(page.columns) * static_cast<std::size_t>(page.rows),
+                      bytes = count * bytesOf(page.type);
+    std::vector<std::byte> pixels(bytes);
+    if (input.readAt(stack.at + static_cast<std::uint64_t>(index) * bytes, pixels.data(), bytes) != bytes)
+        throw damagedPicture(input, "its pixel data is truncated");
+    std::vector<float> lies(count);
+    convert(page.type, TIFFIsBigEndian(tiff) != 0, 1.0, 0.0, pixels.data(), count, lies.data());
+    if (page.photometric == PHOTOMETRIC_MINISWHITE && page.bits <= 16)
+        for (float& one : lies)
+            one = (page.bits == 8 ? 255.0f : 65535.0f) - one;
+    page.orientation.turn(lies.data(), page.columns, page.rows, to);
+}
+
 }  // namespace
 
 PictureInfo tiffInfo(Input& input) {
@@ -239,21 +288,28 @@ PictureInfo tiffInfo(Input& input) {
     if (!tiff) throw damagedPicture(input, stream.text.empty() ? "this is no TIFF" : stream.text);
     PictureInfo info;
     const Page first = pageOf(tiff.get(), input);
-    info.columns = first.columns;
-    info.rows = first.rows;
+    info.columns = first.seenColumns();
+    info.rows = first.seenRows();
     info.bits = first.bits;
     info.isColour = first.samples >= 3;
     info.spacingMm = imageJSpacing(tiff.get());
+    if (info.spacingMm && first.orientation.isTransposed()) std::swap(info.spacingMm->x(), info.spacingMm->y());
+    bool hasOneDirectory = true;
     while (TIFFReadDirectory(tiff.get()) == 1) {
+        hasOneDirectory = false;
         const Page page = pageOf(tiff.get(), input);
         if (page.isReduced) continue;
-        if (page.columns != first.columns || page.rows != first.rows)
-            throw core::Error(fmt::format("its pages have different sizes: {} x {} and, page {}, {} x {}",
-                                          first.columns, first.rows, info.pages + 1, page.columns, page.rows),
+        if (page.seenColumns() != info.columns || page.seenRows() != info.rows)
+            throw core::Error(fmt::format("its pages have different sizes: {} x {} and, page {}, {} x {}", info.columns,
+                                          info.rows, info.pages + 1, page.seenColumns(), page.seenRows()),
                               input.where(), "save pages of one size");
         if (++info.pages > kMaxPages) throw damagedPicture(input, "it claims too many pages");
     }
     if (!stream.text.empty()) throw damagedPicture(input, stream.text);
+    if (hasOneDirectory) {
+        TIFFSetDirectory(tiff.get(), 0);
+        if (const std::optional<RawStack> stack = rawStackOf(tiff.get(), first, input)) info.pages = stack->pages;
+    }
     return info;
 }
 
@@ -264,11 +320,23 @@ void readTiff(Input& input, const PictureInfo& info, int first, int count, float
     if (!tiff) throw damagedPicture(input, stream.text.empty() ? "this is no TIFF" : stream.text);
     const std::size_t each = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
     int index = -1, done = 0;
+    if (info.pages > 1 && TIFFNumberOfDirectories(tiff.get()) == 1) {
+        TIFFSetDirectory(tiff.get(), 0);
+        const Page page = pageOf(tiff.get(), input);
+        const std::optional<RawStack> stack = rawStackOf(tiff.get(), page, input);
+        if (!stack || page.seenColumns() != info.columns || page.seenRows() != info.rows ||
+            first + count > stack->pages)
+            throw damagedPicture(input, "its size changed");
+        for (; done < count; core::report(progress, static_cast<double>(++done) / count))
+            readRaw(tiff.get(), input, *stack, page, first + done, to + static_cast<std::size_t>(done) * each);
+        return;
+    }
     do {
         const Page page = pageOf(tiff.get(), input);
         if (page.isReduced && index >= 0) continue;
         if (++index < first) continue;
-        if (page.columns != info.columns || page.rows != info.rows) throw damagedPicture(input, "its size changed");
+        if (page.seenColumns() != info.columns || page.seenRows() != info.rows)
+            throw damagedPicture(input, "its size changed");
         readPage(tiff.get(), stream, page, to + static_cast<std::size_t>(done) * each);
         core::report(progress, static_cast<double>(++done) / count);
         if (done == count) return;

@@ -17,9 +17,9 @@ namespace handpiece::volume {
 enum class PictureKind { bmp, jpeg, png, tiff };
 
 struct PictureInfo {
-    int columns = 0, rows = 0, bits = 8;
-    int pages = 1;          ///< TIFF alone may have more
-    bool isColour = false;  ///< turned to grey
+    int columns = 0, rows = 0, bits = 8;  ///< as it is seen: picture_orientation.h
+    int pages = 1;                        ///< TIFF alone may have more
+    bool isColour = false;                ///< turned to grey
     /// Where the file says it in a way that can be trusted (ImageJ's stacks): x, y, z; z 0 where it does not tell.
     std::optional<core::Vec3> spacingMm;
 };
@@ -28,7 +28,7 @@ struct PictureInfo {
 [[nodiscard]] PictureInfo jpegInfo(Input& input);
 [[nodiscard]] PictureInfo pngInfo(Input& input);
 [[nodiscard]] PictureInfo tiffInfo(Input& input);
-/// Rows from the top. Throws core::Error for damage and for another size than `info` tells.
+/// Rows from the top, as it is seen. Throws core::Error for damage and for another size than `info` tells.
 void readBmp(Input& input, const PictureInfo& info, float* to);
 void readJpeg(Input& input, const PictureInfo& info, float* to);
 void readPng(Input& input, const PictureInfo& info, float* to);

@@ -186,10 +186,12 @@ class OneRoster {
             if (std::find(kRoles.begin(), kRoles.end(), role) == kRoles.end())
                 sheet.fail(row, "role", fmt::format("'{}' is no role", role.substr(0, 60)),
                            fmt::format("write one of {}", fmt::join(kRoles, ", ")));
-            const std::string& enabled = users_.needed(row, "enabledUser");
+            const std::string enabled = inSmallLetters(users_.needed(row, "enabledUser"));
             if (enabled != "true" && enabled != "false")
-                sheet.fail(row, "enabledUser", fmt::format("'{}' is neither true nor false", enabled.substr(0, 60)),
-                           "write true or false");
+                sheet.fail(
+                    row, "enabledUser",
+                    fmt::format("'{}' is neither true nor false", users_.needed(row, "enabledUser").substr(0, 60)),
+                    "write true or false");
             for (const std::string& org : listed(users_.needed(row, "orgSourcedIds")))
                 requireThere(users_, row, "orgSourcedIds", org, orgs_);
             Roster::Person person;

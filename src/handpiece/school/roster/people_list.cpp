@@ -52,6 +52,7 @@ Roster peopleList(std::string_view bytes, const std::string& where) {
     for (const std::string& name : table.names())
         if (!name.empty() && std::find(kColumns.begin(), kColumns.end(), inSmallLetters(name)) == kColumns.end())
             unread += (unread.empty() ? "" : ", ") + name;
+    if (table.isShiftJis()) roster.notices.emplace_back("it is no UTF-8 and was read as Shift_JIS: look at the names");
     if (!unread.empty()) roster.notices.push_back(fmt::format("columns that are not read: {}", unread));
     std::map<std::string, std::size_t> placeOf;
     std::set<std::string> classes;

@@ -2,6 +2,7 @@
 #include "handpiece/school/roster/spreadsheet.h"
 
 #include <fmt/format.h>
+#include <iconv.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -49,6 +50,41 @@ std::string fromUtf16(std::string_view bytes, bool isBigEndian, const std::strin
         addUtf8(text, c);
     }
     if (bytes.size() % 2 != 0) refuse(where, line, "the text ends in the middle of a character", "save it again");
+    return text;
+}
+
+bool isUtf8(std::string_view text) {
+    while (!text.empty()) {
+        const std::size_t length = core::utf8Length(text);
+        if (length == 0) return false;
+        text.remove_prefix(length);
+    }
+    return true;
+}
+
+/// What a Japanese Windows calls "CSV". Empty where these bytes are none of its, or would be a kanji behind a small
+/// letter: so read, "Ren\u00e9e" of western Europe looks.
+std::string fromShiftJis(std::string_view bytes) {
+    const iconv_t way = iconv_open("UTF-8", "CP932");
+    if (way == reinterpret_cast<iconv_t>(-1)) return {};
+    std::string text(3 * bytes.size() + 16, '\0');
+    char* from = const_cast<char*>(bytes.data());
+    char* to = text.data();
+    std::size_t left = bytes.size(), room = text.size();
+    const bool isRead = iconv(way, &from, &left, &to, &room) != static_cast<std::size_t>(-1) && left == 0;
+    iconv_close(way);
+    if (!isRead) return {};
+    text.resize(text.size() - room);
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = core::utf8Length(std::string_view(text).substr(i));
+        if (length > 1) {
+            const std::string_view one = std::string_view(text).substr(i, length);
+            const bool isJapanese = (one >= "\u3000" && one <= "\u30ff") || (one >= "\u4e00" && one <= "\u9fff") ||
+                                    (one >= "\uff01" && one <= "\uff9f");
+            if (!isJapanese || (i > 0 && text[i - 1] >= 'a' && text[i - 1] <= 'z')) return {};
+        }
+        i += std::max<std::size_t>(length, 1);
+    }
     return text;
 }
 
@@ -190,11 +226,14 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
     if (bytes.starts_with("PK\x03\x04") || bytes.starts_with("\xd0\xcf\x11\xe0"))
         refuse(where, 1, "this is a spreadsheet program's own file", kSaveAnew);
     std::string decoded;
-    if (bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff")) {
+    const bool isUtf16 = bytes.starts_with("\xff\xfe") || bytes.starts_with("\xfe\xff");
+    if (isUtf16) {
         decoded = fromUtf16(bytes.substr(2), bytes.starts_with("\xfe\xff"), where);
         bytes = decoded;
     } else if (bytes.starts_with("\xef\xbb\xbf")) {
         bytes.remove_prefix(3);
+    } else if (!isUtf8(bytes)) {
+        if (decoded = fromShiftJis(bytes); !decoded.empty()) bytes = decoded;
     }
     requireUtf8(bytes, where);
     std::size_t line = 1;
@@ -207,6 +246,7 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
     }
     Spreadsheet table;
     table.where_ = std::move(where);
+    table.isShiftJis_ = !decoded.empty() && !isUtf16;
     std::vector<Row> rows = Reader(bytes, separator, line, table.where_).rows();
     if (rows.empty()) refuse(table.where_, line, "there is nothing in it", "begin with a line of columns' names");
     Row head = std::move(rows.front());

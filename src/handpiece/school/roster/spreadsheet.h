@@ -19,10 +19,10 @@ inline constexpr std::size_t kMostSpreadsheetBytes = 64 << 20, kMostCellBytes = 
 /// Rows under a line of names. All texts are UTF-8 without control characters, without blanks around them.
 class Spreadsheet {
   public:
-    /// UTF-8 with and without a byte order mark, or UTF-16 with one; between cells a comma, a semicolon or a tab:
-    /// whichever the line of names has most of, or what Excel's line "sep=;" names. Cells may stand in quotes (RFC
-    /// 4180); rows without anything are passed over.
-    /// Throws core::Error "list-unfit" with line and column.
+    /// UTF-8 with and without a byte order mark, UTF-16 with one, or Shift_JIS (CP932); between cells a comma, a
+    /// semicolon or a tab: whichever the line of names has most of, or what Excel's line "sep=;" names. Cells may stand
+    /// in quotes (RFC 4180); rows without anything are passed over. Throws core::Error "list-unfit" with line and
+    /// column.
     [[nodiscard]] static Spreadsheet parse(std::string_view bytes, std::string where);
 
     struct Row {
@@ -32,6 +32,9 @@ class Spreadsheet {
     [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
     [[nodiscard]] const std::vector<Row>& rows() const noexcept { return rows_; }
     [[nodiscard]] const std::string& where() const noexcept { return where_; }
+
+    /// Which nothing in the file says: it was read so since it is no UTF-8.
+    [[nodiscard]] bool isShiftJis() const noexcept { return isShiftJis_; }
 
     [[nodiscard]] bool has(std::string_view name) const;
     /// Throws core::Error for a column that is missing, naming those there are.
@@ -48,6 +51,7 @@ class Spreadsheet {
     std::string where_;
     std::vector<std::string> names_, small_;  ///< as written; in small letters
     std::vector<Row> rows_;
+    bool isShiftJis_ = false;
 };
 
 }  // namespace handpiece::school

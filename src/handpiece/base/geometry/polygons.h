@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+/// @file
+/// Polygons of files that hold more than triangles. Only mesh_io*.cpp include it.
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "handpiece/base/geometry/triangle_mesh.h"
+
+namespace handpiece::geometry::formats {
+
+/// Cuts polygons into triangles, those that are concave without leaving them. Vertices may come after the polygons that
+/// name them: all are cut as fans at first, and looked at when the vertices are there.
+class Polygons {
+  public:
+    /// Appends corners - 2 triangles; fewer than three corners give none.
+    void add(std::vector<Triangle>& triangles, std::span<const std::uint32_t> corners);
+
+    struct Cut {
+        std::size_t concave = 0;   ///< cut anew
+        std::size_t crossing = 0;  ///< that cannot be cut: they cross themselves, or have more than 20,000 corners
+    };
+    /// Once, when all is read. A convex polygon stays the fan that it was; an edge of a polygon is one of its
+    /// triangles' in every case. By ears (Meisters, The American Mathematical Monthly 82, 1975), in the plane of the
+    /// two largest axes of the polygon's area (Newell's normal).
+    [[nodiscard]] Cut settle(TriangleMesh& mesh) const;
+
+  private:
+    struct Polygon {
+        std::size_t triangle, corner, count;
+    };
+    std::vector<Polygon> polygons_;
+    std::vector<std::uint32_t> corners_;
+};
+
+}  // namespace handpiece::geometry::formats

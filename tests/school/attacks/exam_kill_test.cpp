@@ -170,6 +170,7 @@ INSTANTIATE_TEST_SUITE_P(OnBoth, ExamKillTest, testing::Values("sqlite", "postgr
 TEST_P(ExamKillTest, NothingIsLostAndNobodyAccused) {
     const int kills = times("HANDPIECE_KILLS", 2);
     const bool isWhole = std::getenv("HANDPIECE_KILLS") != nullptr;
+    if (isPostgres() && !isWhole) GTEST_SKIP() << "HANDPIECE_KILLS=2 holds an exam on this database, too";
     holdExam(isWhole ? 30 : 3);
     std::unique_ptr<Program> server = serve();
     setUpStations();

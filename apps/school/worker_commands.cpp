@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A machine that cuts works again for a school's server elsewhere, over the server's own protocol.
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/file.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <cstdio>
@@ -48,26 +50,36 @@ school_station::Enrolment enrolmentOf(const WorkerOptions& o) {
         return school_station::readEnrolment(enrolmentIn(o));
     } catch (const core::Error& e) {
         throw core::Error(e.id() == "not-enrolled" ? "this machine works for no school yet" : e.problem(), e.where(),
-                          "enrol it: handpiece school worker enrol SERVER CODE --again --home " + o.home)
+                          fmt::format("enrol it: handpiece school worker enrol SERVER CODE{} --home {}",
+                                      e.id() == "not-enrolled" ? "" : " --again", o.home))
             .as(e.id());
     }
 }
 
-/// One at a time works from a folder.
-core::FileStream lockOn(const std::filesystem::path& folder) {
-    core::FileStream lock = core::createOwnFile(folder / "running");
-    if (!lock || flock(fileno(lock.get()), LOCK_EX | LOCK_NB) != 0)
+/// One at a time works from a folder: what lies in it is its own.
+class OnlyHere {
+  public:
+    explicit OnlyHere(const std::filesystem::path& folder)
+        : file_(open((folder / "running").c_str(), O_CREAT | O_RDWR | O_CLOEXEC, 0600)) {
+        if (file_ >= 0 && flock(file_, LOCK_EX | LOCK_NB) == 0) return;
+        if (file_ >= 0) close(file_);
         throw core::Error("another worker runs from this folder", folder.string(),
                           "one is enough: it takes --workers; or give another --home")
             .as("not-writable", {folder.string()});
-    return lock;
-}
+    }
+    ~OnlyHere() { close(file_); }
+    OnlyHere(const OnlyHere&) = delete;
+    OnlyHere& operator=(const OnlyHere&) = delete;
+
+  private:
+    const int file_;
+};
 
 void run(const WorkerOptions& o) {
     std::atomic<bool> ended{false};
     listenForEnd();
     const school_station::Enrolment enrolment = enrolmentOf(o);
-    const core::FileStream lock = lockOn(o.home);
+    const OnlyHere only(o.home);
     const std::filesystem::path works = std::filesystem::path(o.home) / "works";
     std::error_code none;  // what one that was killed left
     std::filesystem::remove_all(works, none);

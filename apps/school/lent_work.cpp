@@ -57,13 +57,8 @@ Found foundOf(const Books& books, const Job& job) {
 
 class WorkOfBooks final : public LentWork {
   public:
-    WorkOfBooks(std::unique_ptr<Books> books, TakenJob taken, std::string worker, Milliseconds leaseMs,
-                std::function<Milliseconds()> clock)
-        : books_(std::move(books)),
-          taken_(std::move(taken)),
-          worker_(std::move(worker)),
-          leaseMs_(leaseMs),
-          clock_(std::move(clock)) {}
+    WorkOfBooks(std::unique_ptr<Books> books, TakenJob taken, std::string worker, std::function<Milliseconds()> clock)
+        : books_(std::move(books)), taken_(std::move(taken)), worker_(std::move(worker)), clock_(std::move(clock)) {}
     [[nodiscard]] std::int64_t turn() const override { return taken_.job.turn; }
     [[nodiscard]] const std::string& question() const override { return taken_.question; }
     [[nodiscard]] sandboxed::Files files(const core::Progress& /*progress*/) override {
@@ -73,7 +68,7 @@ class WorkOfBooks final : public LentWork {
         files.exercise = exercise_.emplace(books_->files().path(taken_.exercise)).path();
         return files;
     }
-    [[nodiscard]] bool renew() override { return books_->renew(taken_.job, now(), leaseMs_); }
+    [[nodiscard]] bool renew() override { return books_->renew(taken_.job, now(), kLeaseMs); }
     void enter(sandboxed::Proof proof, const core::Progress& /*progress*/) override {
         (void)enterProof(*books_, taken_.job, std::move(proof), worker_, now());
     }
@@ -86,7 +81,6 @@ class WorkOfBooks final : public LentWork {
     const std::unique_ptr<Books> books_;
     TakenJob taken_;
     const std::string worker_;
-    const Milliseconds leaseMs_;
     const std::function<Milliseconds()> clock_;
     std::optional<ExerciseFile> exercise_;
 };
@@ -97,9 +91,9 @@ class BooksSource final : public WorkSource {
         : place_(std::move(place)), clock_(std::move(clock)) {}
     [[nodiscard]] std::unique_ptr<LentWork> take() override {
         auto books = std::make_unique<Books>(place_.data, place_.database);
-        std::optional<TakenJob> taken = takeJob(*books, worker_, books->sharedTime(clock_()), place_.leaseMs);
+        std::optional<TakenJob> taken = takeJob(*books, worker_, books->sharedTime(clock_()));
         if (!taken) return {};
-        return std::make_unique<WorkOfBooks>(std::move(books), std::move(*taken), worker_, place_.leaseMs, clock_);
+        return std::make_unique<WorkOfBooks>(std::move(books), std::move(*taken), worker_, clock_);
     }
 
   private:
@@ -114,8 +108,8 @@ std::unique_ptr<WorkSource> worksOf(BooksPlace place, std::function<Milliseconds
     return std::make_unique<BooksSource>(std::move(place), std::move(clock));
 }
 
-std::optional<TakenJob> takeJob(Books& books, const std::string& worker, Milliseconds now, Milliseconds leaseMs) {
-    while (const std::optional<Job> job = books.takeJob(worker, now, leaseMs)) {
+std::optional<TakenJob> takeJob(Books& books, const std::string& worker, Milliseconds now) {
+    while (const std::optional<Job> job = books.takeJob(worker, now, kLeaseMs)) {
         const Found found = foundOf(books, *job);
         if (found.lacks.empty())
             return TakenJob{*job,

@@ -46,7 +46,6 @@ class WorkSource {
 struct BooksPlace {
     std::filesystem::path data;
     std::string database{};
-    school::Milliseconds leaseMs = kLeaseMs;
 };
 /// Of books that this process reads and writes itself.
 [[nodiscard]] std::unique_ptr<WorkSource> worksOf(BooksPlace place, std::function<school::Milliseconds()> clock);
@@ -59,8 +58,8 @@ struct TakenJob {
     std::string exercise;               ///< of its file
 };
 /// The next one that can be done, lent to `worker`; what can not is refused here.
-[[nodiscard]] std::optional<TakenJob> takeJob(school::Books& books, const std::string& worker, school::Milliseconds now,
-                                              school::Milliseconds leaseMs);
+[[nodiscard]] std::optional<TakenJob> takeJob(school::Books& books, const std::string& worker,
+                                              school::Milliseconds now);
 /// Of sessions and exercise.
 [[nodiscard]] std::vector<std::string> filesOf(const school::Books& books, const school::Job& job);
 /// What its worker found. False: another was quicker.

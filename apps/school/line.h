@@ -89,10 +89,8 @@ class Line {
                 .as(core::writeErrorId(errno), {std::strerror(errno)});
         };
         if (!into) throw cannotKeep();
-        bool isWritten = true;
         ask("GET", path, {}, nullptr, most, [&](const char* data, std::size_t size) {
-            isWritten = std::fwrite(data, 1, size, into.get()) == size;
-            if (!isWritten) throw cannotKeep();
+            if (std::fwrite(data, 1, size, into.get()) != size) throw cannotKeep();
             return goesOn();
         });
         if (std::fflush(into.get()) != 0) throw cannotKeep();

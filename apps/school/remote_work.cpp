@@ -23,7 +23,7 @@ using school_station::Line;
 
 /// A session of a day's work has some 300 MB [R]; who sends more is no server of ours.
 constexpr std::uint64_t kMostBytes = 2ull << 30;
-/// The server reads the recordings itself before it answers a proof.
+/// The server reads the recordings itself before it answers a proof. Nothing else is waited for so long.
 constexpr std::chrono::minutes kProofPatience{10};
 constexpr int kPatience = 5;  // leases
 
@@ -48,9 +48,10 @@ class WorkFolder {
 
 class RemoteWork final : public LentWork {
   public:
-    RemoteWork(Line& line, Line& aside, std::filesystem::path in, school_wire::Work work)
+    RemoteWork(Line& line, Line& aside, Line& patient, std::filesystem::path in, school_wire::Work work)
         : line_(line),
           aside_(aside),
+          patient_(patient),
           in_(std::move(in)),
           work_(std::move(work)),
           path_(fmt::format("/api/v1/works/{}/{}", work_.number, work_.turn)) {}
@@ -86,7 +87,7 @@ class RemoteWork final : public LentWork {
     }
     void enter(sandboxed::Proof proof, const core::Progress& progress) override {
         const std::string json = sandboxed::toJson(proof);
-        untilHeard(progress, [&] { (void)line_.post(path_ + "/proof", json); });
+        untilHeard(progress, [&] { (void)patient_.post(path_ + "/proof", json); });
         std::printf("work %lld: %s\n", static_cast<long long>(work_.number), proof.score.state.c_str());
         (void)std::fflush(stdout);
     }
@@ -123,7 +124,7 @@ class RemoteWork final : public LentWork {
                 .as("server-silent", {what.hash});
     }
 
-    Line &line_, &aside_;  ///< the other, since it is asked while a file comes
+    Line &line_, &aside_, &patient_;  ///< one is asked while a file comes, one for a proof
     const std::filesystem::path in_;
     const school_wire::Work work_;
     const std::string path_;
@@ -133,16 +134,19 @@ class RemoteWork final : public LentWork {
 class RemoteSource final : public WorkSource {
   public:
     RemoteSource(const school_station::Enrolment& e, std::filesystem::path folder)
-        : folder_(std::move(folder)), line_(e.server, e.key, kProofPatience), aside_(e.server, e.key) {}
+        : folder_(std::move(folder)),
+          line_(e.server, e.key),
+          aside_(e.server, e.key),
+          patient_(e.server, e.key, kProofPatience) {}
     [[nodiscard]] std::unique_ptr<LentWork> take() override {
         const std::string json = line_.post(fmt::format("/api/v1/works?engine={}", core::kEngineRevision), "{}");
         if (json.empty()) return {};
-        return std::make_unique<RemoteWork>(line_, aside_, folder_, school_wire::workFrom(json));
+        return std::make_unique<RemoteWork>(line_, aside_, patient_, folder_, school_wire::workFrom(json));
     }
 
   private:
     const std::filesystem::path folder_;
-    Line line_, aside_;
+    Line line_, aside_, patient_;
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 
 namespace handpiece::school_server {
 
-Worker::Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause, std::chrono::milliseconds renewal)
-    : source_(std::move(source)), pause_(pause), renewal_(renewal) {}
+Worker::Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause)
+    : source_(std::move(source)), pause_(pause) {}
 Worker::~Worker() {
     stop();
 }
@@ -55,12 +55,13 @@ void Worker::loop() {
 bool Worker::workOnce() {
     const std::unique_ptr<LentWork> work = source_->take();
     if (!work) return false;
+    constexpr std::chrono::milliseconds kRenewal(kLeaseMs / 4);
     bool isLost = false;
     auto renewed = std::chrono::steady_clock::now();
     const core::Progress progress = [&](double) {
         if (ends_) return false;
         const auto now = std::chrono::steady_clock::now();
-        if (now - renewed < renewal_) return true;
+        if (now - renewed < kRenewal) return true;
         renewed = now;
         isLost = !work->renew();
         return !isLost;

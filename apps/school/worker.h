@@ -19,8 +19,7 @@ namespace handpiece::school_server {
 class Worker {
   public:
     /// `pause` lies between two looks for work; where one fails they grow to a minute.
-    explicit Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause = std::chrono::seconds(1),
-                    std::chrono::milliseconds renewal = std::chrono::milliseconds(kLeaseMs / 4));
+    explicit Worker(std::unique_ptr<WorkSource> source, std::chrono::milliseconds pause = std::chrono::seconds(1));
     /// Before start(): called once, from its thread, when a server takes no work of this machine any more. It ends
     /// then.
     void onRefused(std::function<void(const core::Error&)> told) { refused_ = std::move(told); }
@@ -38,7 +37,7 @@ class Worker {
     void loop();
 
     const std::unique_ptr<WorkSource> source_;
-    const std::chrono::milliseconds pause_, renewal_;
+    const std::chrono::milliseconds pause_;
     std::function<void(const core::Error&)> refused_;
     std::mutex mutex_;
     std::condition_variable wake_;

@@ -92,7 +92,7 @@ std::vector<Entry> workerRoutes(Service* of) {
                  throw core::Error("this machine has as much in hand as it may", station.name,
                                    "finish some of it first")
                      .as("work-enough", {std::to_string(kMostInHand)});
-             const auto taken = takeJob(*open, nameOf(station), open->sharedTime(of->clock()), kLeaseMs);
+             const auto taken = takeJob(*open, nameOf(station), open->sharedTime(of->clock()));
              if (!taken) {
                  response.status = 204;
                  return;

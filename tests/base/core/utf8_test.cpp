@@ -43,6 +43,10 @@ TEST(Utf8, EveryCharacterAndNothingElse) {
     for (const char* none : {"", "\x80", "\xc0\xaf", "\xc1\xbf", "\xe0\x80\xaf", "\xed\xa0\x80", "\xf0\x80\x80\xaf",
                              "\xf4\x90\x80\x80", "\xf5\x80\x80\x80", "\xe2\x82", "\xff"})
         EXPECT_EQ(utf8Length(none), 0u) << none;
+    EXPECT_EQ(utf8Prefix(""), 0u);
+    EXPECT_EQ(utf8Prefix("a\u68ee\n"), 5u);
+    EXPECT_EQ(utf8Prefix("a\u68ee\xff..."), 4u);
+    EXPECT_EQ(utf8Prefix("a\xe6\xa3"), 1u);
 }
 
 }  // namespace

@@ -28,17 +28,6 @@ std::size_t statusOf(pid_t id, const std::string& line) {
         }
     return 0;
 }
-std::vector<pid_t> childrenOf(pid_t id) {
-    std::vector<pid_t> all;
-    const std::string tasks = "/proc/" + std::to_string(id) + "/task";
-    std::error_code none;
-    for (const auto& task : fs::directory_iterator(tasks, none)) {
-        std::ifstream children(task.path() / "children");
-        for (pid_t one = 0; children >> one;)
-            all.push_back(one);
-    }
-    return all;
-}
 constexpr std::size_t kMostServerKb = 300'000;
 
 class AttackTest : public RobustTest {

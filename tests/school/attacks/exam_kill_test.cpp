@@ -54,24 +54,12 @@ class ExamKillTest : public RobustTest {
             open.enrol(std::span(&in, 1), act);
             exams.set(school::ExamCandidate{kExam, seat.person, exam::candidateHash(kExam, seat.code), 0, 0, ""}, act);
             exams.add(school::ExamConfirmation{kExam, seat.person, 0, hash}, act);
-            cut(seat.recording, -1.2 + 2.4 * static_cast<double>(i) / static_cast<double>(seats));
+            // A hole of their own.
+            recordSession(seat.recording, 1.3,
+                          simulation::hole(-1.2 + 2.4 * static_cast<double>(i) / static_cast<double>(seats)));
             seats_.push_back(std::move(seat));
         }
         (void)signExam(open, kExam, examKey(data_), act);
-    }
-    /// A hole of one's own.
-    static void cut(const fs::path& file, double x) {
-        simulation::SimulationSettings settings = simulation::blockSettings();
-        const instrument::Instrument known = instrument::makeInstrument("round:1.0x0.9");
-        settings.bur = known.bur, settings.cuttingParameters = known.cuttingParameters;
-        const simulation::SimulationSetup station = simulation::makeSimulation(blockTask().toothCase, settings, false);
-        simulation::LiveSessionSettings live;
-        live.sessionFile = file;
-        const auto lead = std::make_shared<simulation::Lead>();
-        simulation::LiveSession sitting(station, blockTask().toothCase, simulation::handOf(simulation::hole(x), lead),
-                                        live, nullptr);
-        EXPECT_TRUE(simulation::leadTo(sitting, *lead, 1.3));
-        sitting.stop();
     }
     void setUpStations() {
         for (std::size_t i = 0; i < seats_.size(); ++i) {
@@ -137,12 +125,8 @@ class ExamKillTest : public RobustTest {
                 server = serve();
                 return true;
             case Victim::reader: {
-                std::ifstream children(fmt::format("/proc/{0}/task/{0}/children", machine->id()));
-                for (const auto& task : fs::directory_iterator(fmt::format("/proc/{}/task", machine->id()))) {
-                    std::ifstream its(task.path() / "children");
-                    if (pid_t one = 0; its >> one) return ::kill(one, SIGKILL) == 0;
-                }
-                return false;
+                const std::vector<pid_t> readers = childrenOf(machine->id());
+                return !readers.empty() && ::kill(readers.front(), SIGKILL) == 0;
             }
             case Victim::service: {
                 Seat& seat = seats_[random_() % seats_.size()];

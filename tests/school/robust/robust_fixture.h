@@ -81,6 +81,18 @@ class Program {
     pid_t child_ = -1;
 };
 
+inline std::vector<pid_t> childrenOf(pid_t id) {
+    std::vector<pid_t> all;
+    const std::string tasks = "/proc/" + std::to_string(id) + "/task";
+    std::error_code none;
+    for (const auto& task : fs::directory_iterator(tasks, none)) {
+        std::ifstream children(task.path() / "children");
+        for (pid_t one = 0; children >> one;)
+            all.push_back(one);
+    }
+    return all;
+}
+
 inline int freePort() {
     const int line = socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in at{};

@@ -87,7 +87,7 @@ inline tasks::Task blockTask() {
 }
 
 /// A sitting at the block of so long [s], recorded.
-inline void recordSession(const fs::path& path, double lastsS) {
+inline void recordSession(const fs::path& path, double lastsS, const device::Motion& motion = simulation::twoHoles()) {
     simulation::SimulationSettings settings = simulation::blockSettings();
     const instrument::Instrument known = instrument::makeInstrument("round:1.0x0.9");
     settings.bur = known.bur, settings.cuttingParameters = known.cuttingParameters;
@@ -95,8 +95,7 @@ inline void recordSession(const fs::path& path, double lastsS) {
     simulation::LiveSessionSettings live;
     live.sessionFile = path;
     const auto lead = std::make_shared<simulation::Lead>();
-    simulation::LiveSession sitting(station, blockTask().toothCase, simulation::handOf(simulation::twoHoles(), lead),
-                                    live, nullptr);
+    simulation::LiveSession sitting(station, blockTask().toothCase, simulation::handOf(motion, lead), live, nullptr);
     EXPECT_TRUE(simulation::leadTo(sitting, *lead, lastsS));
     sitting.stop();
 }

@@ -20,6 +20,7 @@
 #include "handpiece/base/sandbox/sandbox.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/package_type.h"
+#include "handpiece/school/store/content_files.h"
 
 namespace handpiece::sandboxed {
 namespace {
@@ -163,38 +164,30 @@ std::vector<Carried> carriedIn(const Said& said, const sandbox::Answer& answer) 
 
 constexpr std::size_t kMostResult = 1u << 20, kMostWords = 16'384;
 
-bool isHash(const std::string& text, std::size_t digits) {
-    return text.size() == digits && text.find_first_not_of("0123456789abcdef") == std::string::npos;
-}
-
 Exercise exerciseFrom(const Said& said) {
     Exercise e;
     e.id = said.text("id", 64), e.hash = said.text("hash", 16), e.tooth = said.text("tooth", 1000);
     e.level = said.text("level", 64), e.rubric = said.text("rubric", 1u << 20);
     e.title = said.byLanguage("title", 1000), e.instructions = said.byLanguage("instructions", kMostWords);
     const double version = said.number("version");
-    if (version < 0 || version > 1e15 || !isHash(e.hash, 16)) throw noAnswer();
+    if (version < 0 || version > 1e15 || !school::isHex(e.hash, 16)) throw noAnswer();
     e.version = static_cast<std::int64_t>(version);
     e.minutes = said.numberIfAny("minutes"), e.voxelMm = said.number("voxel_mm");
     e.hasPreparation = said.yes("has_preparation"), e.lockedHelps = said.texts("locked_helps", 100, 64);
     return e;
 }
 
-}  // namespace
-
-namespace {
-
 Contents contentsFrom(const Said& said, std::size_t sessions) {
     Contents contents{said.texts("contents", sessions, 64), {}};
     if (contents.inputs.size() != sessions) throw noAnswer();
     for (const std::string& one : contents.inputs)
-        if (!one.empty() && !isHash(one, 64)) throw noAnswer();
+        if (!one.empty() && !school::isHex(one, 64)) throw noAnswer();
     const Json& sketches = said.at("sketches");
     if (!sketches.is_array() || sketches.size() != sessions) throw noAnswer();
     for (const Json& one : sketches) {
         contents.sketches.push_back(Said::textsOf(one, proving::kSketch, 16));
         for (const std::string& hash : contents.sketches.back())
-            if (!isHash(hash, 16)) throw noAnswer();
+            if (!school::isHex(hash, 16)) throw noAnswer();
     }
     return contents;
 }

@@ -21,4 +21,11 @@ std::size_t utf8Length(std::string_view text) noexcept {
     return isWrong ? 0 : length;
 }
 
+std::size_t utf8Prefix(std::string_view text) noexcept {
+    std::size_t at = 0;
+    while (const std::size_t length = utf8Length(text.substr(at)))
+        at += length;
+    return at;
+}
+
 }  // namespace handpiece::core

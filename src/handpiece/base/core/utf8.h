@@ -10,5 +10,7 @@ namespace handpiece::core {
 
 /// Bytes of the UTF-8 character that begins the text (RFC 3629); 0: none does.
 [[nodiscard]] std::size_t utf8Length(std::string_view text) noexcept;
+/// Bytes until the first that is none of UTF-8; all of them where there is none.
+[[nodiscard]] std::size_t utf8Prefix(std::string_view text) noexcept;
 
 }  // namespace handpiece::core

@@ -186,7 +186,7 @@ class VertexMerger {
 
 /// Cuts what is concave, and says what could not be.
 inline void settle(const Polygons& polygons, TriangleMesh& mesh, const Source& source) {
-    if (const std::size_t crossing = polygons.settle(mesh).crossing; crossing > 0)
+    if (const std::size_t crossing = polygons.settle(mesh); crossing > 0)
         source.note(fmt::format("{} {} itself: it is cut as a fan, which leaves its outline", crossing,
                                 crossing == 1 ? "polygon crosses" : "polygons cross"));
 }

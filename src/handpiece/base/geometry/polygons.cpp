@@ -106,9 +106,9 @@ void Polygons::add(std::vector<Triangle>& triangles, std::span<const std::uint32
         triangles.push_back({corners[0], corners[i - 1], corners[i]});
 }
 
-Polygons::Cut Polygons::settle(TriangleMesh& mesh) const {
+std::size_t Polygons::settle(TriangleMesh& mesh) const {
     constexpr std::size_t kMostCorners = 20'000;
-    Cut done;
+    std::size_t crossing = 0;
     for (const Polygon& one : polygons_) {
         const std::span<const std::uint32_t> corners(corners_.data() + one.corner, one.count);
         const std::vector<Point> points = flattened(mesh, corners);
@@ -126,14 +126,13 @@ Polygons::Cut Polygons::settle(TriangleMesh& mesh) const {
                              ? ears(points)
                              : std::vector<std::array<std::size_t, 3>>();
         if (cut.empty()) {
-            ++done.crossing;
+            ++crossing;
             continue;
         }
-        ++done.concave;
         for (std::size_t i = 0; i < cut.size(); ++i)
             mesh.triangles[one.triangle + i] = {corners[cut[i][0]], corners[cut[i][1]], corners[cut[i][2]]};
     }
-    return done;
+    return crossing;
 }
 
 }  // namespace handpiece::geometry::formats

@@ -19,14 +19,11 @@ class Polygons {
     /// Appends corners - 2 triangles; fewer than three corners give none.
     void add(std::vector<Triangle>& triangles, std::span<const std::uint32_t> corners);
 
-    struct Cut {
-        std::size_t concave = 0;   ///< cut anew
-        std::size_t crossing = 0;  ///< that cannot be cut: they cross themselves, or have more than 20,000 corners
-    };
-    /// Once, when all is read. A convex polygon stays the fan that it was; an edge of a polygon is one of its
+    /// Once, when all is read. Returns how many concave ones stay fans: they cross themselves, or have more than 20,000
+    /// corners. A convex polygon stays the fan that it was; an edge of a polygon is one of its
     /// triangles' in every case. By ears (Meisters, The American Mathematical Monthly 82, 1975), in the plane of the
     /// two largest axes of the polygon's area (Newell's normal).
-    [[nodiscard]] Cut settle(TriangleMesh& mesh) const;
+    [[nodiscard]] std::size_t settle(TriangleMesh& mesh) const;
 
   private:
     struct Polygon {

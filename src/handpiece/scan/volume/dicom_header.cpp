@@ -166,10 +166,10 @@ class Walker {
                 at = pastFragments(e);
                 continue;
             }
-            const bool isSequence = e.vr == std::array{'S', 'Q'} || e.length == kUndefined || isKnownSequence(e.tag);
+            const bool isSequence = e.vr == kSq || e.length == kUndefined || isKnownSequence(e.tag);
             if (isSequence) {
                 const bool wasExplicit = header_.isExplicit;
-                if (e.vr == std::array{'U', 'N'}) header_.isExplicit = false;  // an unknown sequence is implicit inside
+                if (e.vr == kUn) header_.isExplicit = false;  // an unknown sequence is implicit inside
                 const bool isWanted = isKnownSequence(e.tag);
                 if (e.length != kUndefined && e.value + e.length > input_.size()) throw ends();
                 if (!isWanted && e.length != kUndefined) {
@@ -373,24 +373,20 @@ class Walker {
 
 }  // namespace
 
-const char* DicomHeader::stepsBy() const {
-    const auto isThere = [](const std::optional<double>& mm) { return mm && *mm != 0.0; };
+DicomHeader::FrameStep DicomHeader::frameStep() const {
     const bool hasOwn = std::any_of(frame.begin(), frame.end(), [](const DicomPlace& one) { return one.positionMm; });
-    if (frames < 2 || hasOwn || !place.positionMm || !place.orientation) return nullptr;
-    return gridOffsetsMm.size() == static_cast<std::size_t>(frames) ? "GridFrameOffsetVector"
-           : isThere(place.betweenMm)                               ? "SpacingBetweenSlices"
-           : isThere(place.thicknessMm)                             ? "SliceThickness"
-                                                                    : nullptr;
+    if (frames < 2 || hasOwn || !place.positionMm || !place.orientation) return {};
+    if (gridOffsetsMm.size() == static_cast<std::size_t>(frames)) return {"GridFrameOffsetVector"};
+    if (const double mm = place.betweenMm.value_or(0.0); mm != 0.0) return {"SpacingBetweenSlices", mm};
+    if (const double mm = place.thicknessMm.value_or(0.0); mm != 0.0) return {"SliceThickness", mm};
+    return {};
 }
 
 DicomPlace DicomHeader::placeOf(int index) const {
     DicomPlace all = place;
-    if (index > 0 && stepsBy() != nullptr) {
-        const auto at = static_cast<std::size_t>(index);
+    if (const FrameStep step = frameStep(); step.by != nullptr && index > 0 && index < frames) {
         const double alongMm =
-            at < gridOffsetsMm.size() && gridOffsetsMm.size() == static_cast<std::size_t>(frames)
-                ? gridOffsetsMm[at] - gridOffsetsMm[0]
-                : index * (place.betweenMm.value_or(0.0) != 0.0 ? *place.betweenMm : place.thicknessMm.value_or(0.0));
+            step.mm != 0.0 ? index * step.mm : gridOffsetsMm[static_cast<std::size_t>(index)] - gridOffsetsMm[0];
         const std::array<double, 6>& o = *place.orientation;
         // Along a row by down a column.
         const std::array<double, 3> normal{o[1] * o[5] - o[2] * o[4], o[2] * o[3] - o[0] * o[5],

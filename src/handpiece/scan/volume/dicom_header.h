@@ -43,9 +43,12 @@ struct DicomHeader {
     std::vector<Fragment> fragments;          ///< of encapsulated pixels, without the offset table
     std::vector<std::uint64_t> frameOffsets;  ///< the offset table
 
-    /// What tells how far a frame lies from the next where all have one place: an element's name; null where each has
-    /// its own, or nothing does.
-    [[nodiscard]] const char* stepsBy() const;
+    /// How far a frame lies from the next where all have one place.
+    struct FrameStep {
+        const char* by = nullptr;  ///< the element that tells it; null: each has its own place, or nothing tells it
+        double mm = 0.0;           ///< along the normal; 0: as `gridOffsetsMm` says
+    };
+    [[nodiscard]] FrameStep frameStep() const;
     [[nodiscard]] DicomPlace placeOf(int index) const;
 };
 

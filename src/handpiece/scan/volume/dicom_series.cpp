@@ -251,7 +251,7 @@ class Assembly {
             notes.push_back(
                 "these are pictures of a screen or a film (secondary capture): grey values and burned-in text cannot "
                 "be trusted");
-        if (const char* by = group_.slices[0].header->stepsBy())
+        if (const char* by = group_.slices[0].header->frameStep().by)
             notes.push_back(fmt::format("all its slices have one place: they are taken to lie as its {} says", by));
         if (any(&DicomHeader::isLossy)) notes.push_back("the values were compressed with loss");
         if (any(&DicomHeader::isOverview)) notes.push_back("this is an overview picture (localizer)");

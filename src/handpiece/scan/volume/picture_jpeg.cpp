@@ -111,9 +111,6 @@ const char* encode(jpeg_compress_struct& state, Problem& problem, const std::uin
     return nullptr;
 }
 
-}  // namespace
-
-namespace {
 Lies liesIn(Input& input, const std::vector<std::byte>& data) {
     Lies lies;
     jpeg_decompress_struct state{};
@@ -121,6 +118,7 @@ Lies liesIn(Input& input, const std::vector<std::byte>& data) {
     if (const char* why = decode(state, problem, data, lies, nullptr, nullptr)) throw damagedPicture(input, why);
     return lies;
 }
+
 }  // namespace
 
 PictureInfo jpegInfo(Input& input) {

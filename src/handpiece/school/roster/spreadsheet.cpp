@@ -53,17 +53,8 @@ std::string fromUtf16(std::string_view bytes, bool isBigEndian, const std::strin
     return text;
 }
 
-bool isUtf8(std::string_view text) {
-    while (!text.empty()) {
-        const std::size_t length = core::utf8Length(text);
-        if (length == 0) return false;
-        text.remove_prefix(length);
-    }
-    return true;
-}
-
 /// What a Japanese Windows calls "CSV". Empty where these bytes are none of its, or would be a kanji behind a small
-/// letter: so read, "Ren\u00e9e" of western Europe looks.
+/// letter: so the accented letters of western Europe look.
 std::string fromShiftJis(std::string_view bytes) {
     const iconv_t way = iconv_open("UTF-8", "CP932");
     if (way == reinterpret_cast<iconv_t>(-1)) return {};
@@ -89,14 +80,10 @@ std::string fromShiftJis(std::string_view bytes) {
 }
 
 void requireUtf8(std::string_view text, const std::string& where) {
-    std::size_t line = 1;
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = core::utf8Length(text.substr(i));
-        if (length == 0)
-            refuse(where, line, fmt::format("byte {:02x} is no UTF-8", static_cast<unsigned char>(text[i])), kSaveAnew);
-        if (text[i] == '\n') ++line;
-        i += length;
-    }
+    const std::size_t good = core::utf8Prefix(text);
+    if (good == text.size()) return;
+    const auto line = 1 + static_cast<std::size_t>(std::count(text.begin(), text.begin() + good, '\n'));
+    refuse(where, line, fmt::format("byte {:02x} is no UTF-8", static_cast<unsigned char>(text[good])), kSaveAnew);
 }
 
 /// Of the three the one that stands most often in the first line, outside of quotes.
@@ -232,7 +219,7 @@ Spreadsheet Spreadsheet::parse(std::string_view bytes, std::string where) {
         bytes = decoded;
     } else if (bytes.starts_with("\xef\xbb\xbf")) {
         bytes.remove_prefix(3);
-    } else if (!isUtf8(bytes)) {
+    } else if (core::utf8Prefix(bytes) < bytes.size()) {
         if (decoded = fromShiftJis(bytes); !decoded.empty()) bytes = decoded;
     }
     requireUtf8(bytes, where);

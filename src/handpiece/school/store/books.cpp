@@ -100,13 +100,10 @@ core::Error invalid(const std::string& field, const std::string& value, const st
 }
 
 void requireText(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const std::size_t length = text[i] == '\0' ? 0 : core::utf8Length(text.substr(i));
-        if (length == 0)
-            throw core::Error(fmt::format("byte {} of a text is not UTF-8, or zero", i), {}, "send it as UTF-8")
-                .as("books-invalid", {"text"});
-        i += length;
-    }
+    const std::size_t good = std::min(core::utf8Prefix(text), text.find('\0'));
+    if (good < text.size())
+        throw core::Error(fmt::format("byte {} of a text is not UTF-8, or zero", good), {}, "send it as UTF-8")
+            .as("books-invalid", {"text"});
 }
 
 double requireNumber(double number) {

@@ -481,6 +481,7 @@ std::optional<Job> Books::lent(const std::string& worker, std::int64_t number, s
 }
 
 std::int64_t Books::countLent(const std::string& worker) const {
+    // As the index of open jobs says it, or all jobs ever done would be looked at.
     Statement row = state_->ask(
         "SELECT count(*) FROM jobs WHERE state IN ('waiting', 'taken') AND state = 'taken' AND worker = $1", worker);
     return row.next() ? row.integer(0) : 0;

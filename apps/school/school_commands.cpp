@@ -182,6 +182,9 @@ void push(const StationOptions& o) {
                          .c_str());
     for (const std::string& one : pushed.refused)
         std::fprintf(stderr, "refused: %s\n", one.c_str());
+    if (!pushed.refused.empty())
+        throw core::Error(fmt::format("the server refused {} of them", pushed.refused.size()), enrolment.server,
+                          "the reason for each is above; what was refused stays on this station and is not sent again");
 }
 
 void status(const StationOptions& o) {

@@ -196,7 +196,8 @@ void SlowGuard::look(std::chrono::steady_clock::time_point now) {
         }
         there.emplace(file.st_ino, one);
         const bool isExcepted = bounds_.excepted.count(remote.substr(0, remote.find(' '))) > 0;
-        seen.push_back({file.st_ino, one.since, isExcepted ? std::string() : sourceOf(other), isAnswered});
+        seen.push_back({file.st_ino, one.since, info.tcpi_last_data_recv, isExcepted ? std::string() : sourceOf(other),
+                        isAnswered});
     });
     // Of connections that are gone.
     admitted_.clear();
@@ -217,7 +218,9 @@ std::set<std::uint64_t> SlowGuard::tooMany(std::vector<Seen>& seen) const {
         if (!one.source.empty() && ++ofSource[one.source] > bounds_.ofAddress) isMany = true;
     std::set<std::uint64_t> gone;
     if (!isMany) return gone;
-    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) { return a.since < b.since; });
+    std::sort(seen.begin(), seen.end(), [](const Seen& a, const Seen& b) {
+        return a.since != b.since ? a.since < b.since : a.silentMs > b.silentMs;
+    });
     for (const Seen& one : seen)
         if (!one.isAnswered && !one.source.empty() && ofSource[one.source] > bounds_.ofAddress) {
             --ofSource[one.source];

@@ -65,7 +65,8 @@ class SlowGuard {
     struct Seen {
         std::uint64_t socket = 0;  ///< its inode
         std::chrono::steady_clock::time_point since{};
-        std::string source{};  ///< its address; empty: excepted
+        std::uint32_t silentMs = 0;  ///< of those that were first seen in one look, who is older
+        std::string source{};        ///< its address; empty: excepted
         bool isAnswered = false;
     };
     class Sight;

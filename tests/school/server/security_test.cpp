@@ -444,6 +444,33 @@ TEST(SlowGuardTest, BeyondTheBoundsWhoIsSilentLongestGoes) {
     close(listening);
 }
 
+TEST(SlowGuardTest, OfThoseThatComeBetweenTwoLooksTheYoungestStay) {
+    const int listening = socket(AF_INET, SOCK_STREAM, 0);
+    sockaddr_in own = loopback(INADDR_LOOPBACK, 0);
+    socklen_t size = sizeof own;
+    ASSERT_EQ(bind(listening, reinterpret_cast<const sockaddr*>(&own), sizeof own), 0);
+    ASSERT_EQ(listen(listening, 16), 0);
+    ASSERT_EQ(getsockname(listening, reinterpret_cast<sockaddr*>(&own), &size), 0);
+    SlowGuard guard(listening, std::chrono::minutes(10), {2, 100, {}});
+    // A tenth of a second between two looks: some of these rounds lie within one.
+    for (int round = 0; round < 8; ++round) {
+        std::vector<int> all;
+        for (int i = 0; i < 5; ++i) {
+            all.push_back(lineFrom(INADDR_LOOPBACK + 1u + static_cast<in_addr_t>(round), ntohs(own.sin_port)));
+            std::this_thread::sleep_for(std::chrono::milliseconds(12));
+            all.push_back(accept(listening, nullptr, nullptr));
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(250));
+        std::string open;
+        for (std::size_t i = 0; i < all.size(); i += 2)
+            open += isOpen(all[i]) ? 'o' : '-';
+        EXPECT_EQ(open, "---oo");
+        for (const int line : all)
+            close(line);
+    }
+    close(listening);
+}
+
 TEST_F(SecurityTest, ConnectionsThatAreNotTheServersAreLeftAlone) {
     School school(data(), 0, 0, std::chrono::seconds(1));
     // Another server of this process, at the same port of another address: nobody says a word there.

@@ -267,7 +267,7 @@ TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
 
 TEST_P(BooksInTroubleTest, SayWhenAnotherHoldsThemAndGoOnReading) {
     auto books = filled();
-    auto patient = open(100ms);
+    auto patient = open(500ms);
     std::unique_ptr<Books> holder = open();
     // Another program in the middle of writing.
     sqlite3* other = nullptr;
@@ -312,7 +312,8 @@ TEST_P(BooksInTroubleTest, WhoWritesWithoutAPauseStarvesNobody) {
             for (std::uint64_t n = 1; !isOver; ++n)
                 EXPECT_EQ(test::errorOf([&] { books->push(attempt(t << 32 | n)); }), "");
         });
-    auto books = open(5s);
+    // The others never pause: who is starved waits for ever. A laden machine's disk alone may take some seconds.
+    auto books = open(30s);
     for (std::uint64_t n = 1; n <= 10; ++n)
         EXPECT_EQ(test::errorOf([&] { books->push(attempt(0xf00000000 | n)); }), "");
     isOver = true;
@@ -334,7 +335,8 @@ TEST_P(BooksInTroubleTest, MakingThemIsKilledAtAnyMomentAndBegunAnew) {
     int unmade = 0;
     const auto start = std::chrono::steady_clock::now();
     static_cast<void>(open());
-    const auto making = std::chrono::steady_clock::now() - start;
+    // How long it takes is what else the machine has to do: where the kills come too late, the next come sooner.
+    auto making = std::chrono::steady_clock::now() - start;
     for (int round = 0; round < 25; ++round) {
         data_ = folder_.path() / fmt::format("made{}", round);
         if (isPostgres()) address_ = server()->address(schema_ = server()->newSchema());
@@ -347,7 +349,10 @@ TEST_P(BooksInTroubleTest, MakingThemIsKilledAtAnyMomentAndBegunAnew) {
         kill(child, SIGKILL);
         int status = 0;
         waitpid(child, &status, 0);
-        unmade += WIFSIGNALED(status) ? 1 : 0;
+        if (WIFSIGNALED(status))
+            ++unmade;
+        else
+            making = making * 3 / 4;
         auto books = filled();
         EXPECT_THAT(books->people(), SizeIs(5));
     }

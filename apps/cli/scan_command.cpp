@@ -96,14 +96,14 @@ Vec3 directionOf(const std::string& text, const char* option) {
 }
 
 struct ScanOptions {
-    std::string path, out, job, saveJob, series, spacing, labelOrder, at, threshold, occlusal, mesial, name, kind,
-        tissues, intraoral, intraoralUnit = "mm", percent, pictures;
+    std::string path, out, job, saveJob, series, spacing, region, labelOrder, at, threshold, occlusal, mesial, name,
+        kind, tissues, intraoral, intraoralUnit = "mm", percent, pictures;
     std::vector<std::string> lesions, cuts, marks;
     double voxelMm = 0.0;
     std::size_t faces = 0, threads = 0;
     int tooth = 0;
-    bool labels = false, noDamp = false, noCaries = false, noSmooth = false, tableTwo = false, scenery = false,
-         report = false, json = false, teeth = false;
+    bool reverseSlices = false, labels = false, noDamp = false, noCaries = false, noSmooth = false, tableTwo = false,
+         scenery = false, report = false, json = false, teeth = false;
 };
 
 void takeThresholds(ScanJob& job, const std::string& text) {
@@ -139,6 +139,11 @@ ScanJob jobOf(const ScanOptions& o) {
         if (!(job.spacingMm->minCoeff() >= kMinMm && job.spacingMm->maxCoeff() <= kMaxMm))
             throw core::Error(fmt::format("a spacing of {} mm is none of a tooth's scan", o.spacing), "--spacing",
                               fmt::format("give {} to {}", kMinMm, kMaxMm));
+    }
+    if (o.reverseSlices) job.reverseSlices = true;
+    if (!o.region.empty()) {
+        const std::vector<double> v = numbers(o.region, "--region", 6);
+        job.regionMm = std::array{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
     }
     if (o.labels) job.isLabels = true;
     if (!o.labelOrder.empty()) {
@@ -272,9 +277,8 @@ Json teethJson(const std::vector<segmentation::Candidate>& teeth) {
 }
 
 std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume::Series& series) {
-    volume::ReadSettings settings;
+    volume::ReadSettings settings = scan_case::readSettings(jobOf(o));
     settings.series = series.id;
-    if (!o.spacing.empty()) settings.spacingMm = jobOf(o).spacingMm;
     studies::ProgressBar bar("looking for teeth");
     const core::Progress progress = bar.listener();
     const volume::Scan scan = volume::readScan(o.path, settings, core::part(progress, 0.0, 0.3));
@@ -315,6 +319,7 @@ void info(const ScanOptions& o) {
                  {"slices", s.slices},
                  {"size", s.size},
                  {"spacing_mm", s.isSpacingKnown ? toJson(s.spacingMm) : Json(nullptr)},
+                 {"side_known", s.isSideKnown},
                  {"bits", s.bits},
                  {"picture", o.pictures.empty() || s.thumbnail.empty() ? Json(nullptr) : Json(s.id + ".png")},
                  {"notes", s.notes}});
@@ -458,12 +463,20 @@ void makeCase(const ScanOptions& o) {
     }
 }
 
+void addReadingOptions(Command& command, ScanOptions& o) {
+    command.flag("--reverse-slices", o.reverseSlices,
+                 "read the slices from the other end: without it the tooth is a mirror image");
+    command.option("--region", o.region,
+                   "X,Y,Z,X,Y,Z, two corners of a box [mm, the scan's frame]: nothing else is read");
+}
+
 void addJobOptions(Command& command, ScanOptions& o) {
     command.option("PATH", o.path, "file, folder, ZIP or DICOMDIR; may be left out with --job");
     command.option("--job", o.job, "file of decisions to start from; options given here win over it");
     command.option("--save-job", o.saveJob, "file to keep all decisions in (with the scan's place)");
     command.option("--series", o.series, "which series, as scan info numbers them");
     command.option("--spacing", o.spacing, "millimetres between voxels, one number or X,Y,Z; wins over the file's");
+    addReadingOptions(command, o);
     command.flag("--labels", o.labels,
                  "the scan is labels: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
                  "6 bone, 7 gingiva");
@@ -516,6 +529,7 @@ void addScanCommand(Command& app) {
     looking.flag("--teeth", o.teeth, "also what may be a tooth in it, each with its --at");
     looking.option("--series", o.series, "of which series --teeth tells");
     looking.option("--spacing", o.spacing, "for --teeth, where the file tells none [mm]");
+    addReadingOptions(looking, o);
     looking.option("--threads", o.threads, "threads for long work; 0: all cores").showDefault();
     looking.footer("Example:\n  handpiece scan info slices --json --pictures seen");
     looking.callback([options] { info(*options); });

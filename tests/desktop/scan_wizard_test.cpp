@@ -479,6 +479,19 @@ TEST_F(ScanWizardTest, SpacingIsAskedForWhereTheScanDoesNotTellIt) {
     ASSERT_TRUE(job().spacingMm);
     ASSERT_TRUE(waitFor([this] { return model().scan() != nullptr || model().problem(); })) << said();
     EXPECT_TRUE(find<QPushButton>("scanNext")->isEnabled());
+    // Nor does it tell left from right.
+    const auto isTold = [this](const char* text) {
+        return find<QLabel>("scanNotes")->text().contains(QLatin1String(text));
+    };
+    EXPECT_TRUE(isTold("left and right may be swapped"));
+    const float first = model().scan()->scan->volume.values.front();
+    find<QCheckBox>("scanReverse")->setChecked(true);
+    EXPECT_TRUE(job().reverseSlices);
+    ASSERT_TRUE(waitFor([this] { return model().scan() != nullptr || model().problem(); })) << said();
+    EXPECT_FALSE(isTold("left and right may be swapped"));
+    EXPECT_TRUE(isTold("read from the other end"));
+    const volume::Volume& turned = model().scan()->scan->volume;
+    EXPECT_EQ(turned.values[turned.grid.index(0, 0, turned.grid.size[2] - 1)], first);
 }
 
 TEST_F(ScanWizardTest, LabelsAreTakenAsTheyAre) {

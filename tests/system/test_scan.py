@@ -116,6 +116,35 @@ class Scan(SystemTest):
         for name in ("case.toml", "outer.stl", "enamel.stl", "dentine.stl", "pulp.stl"):
             self.assertEqual((again / name).read_bytes(), (case / name).read_bytes(), name)
 
+    def test_what_may_be_a_mirror_image_is_told_and_turned(self):
+        scan = self.folder / "unsided"
+        shutil.copytree(self.scan, scan)
+        toml = (scan / "scan.toml").read_text()
+        (scan / "scan.toml").write_text("".join(line for line in toml.splitlines(True) if not line.startswith("axes")))
+        self.assertTrue(json.loads(self.ok("scan", "info", self.scan, "--json").stdout)["series"][0]["side_known"])
+        self.assertFalse(json.loads(self.ok("scan", "info", scan, "--json").stdout)["series"][0]["side_known"])
+        told = self.ok("scan", "info", scan).stdout
+        self.assertEqual(told.count("left and right may be swapped"), 1, told)
+        self.assertIn("--reverse-slices", told)
+        done = self.ok("scan", "segment", scan, "--out", self.folder / "labels.nrrd")
+        self.assertEqual(done.stdout.count("left and right may be swapped"), 1, done.stdout)
+        done = self.ok("scan", "segment", scan, "--reverse-slices", "--out", self.folder / "turned.nrrd", "--save-job",
+                       self.folder / "job.toml")
+        self.assertNotIn("may be swapped", done.stdout)
+        self.assertIn("read from the other end", done.stdout)
+        self.assertIn("reverse_slices = true", (self.folder / "job.toml").read_text())
+        self.assertNotEqual((self.folder / "labels.nrrd").read_bytes(), (self.folder / "turned.nrrd").read_bytes())
+
+    def test_names_that_are_no_utf8(self):
+        odd = self.folder / os.fsdecode(b"caf\xe9")
+        shutil.copytree(self.scan, odd)
+        found = json.loads(self.ok("scan", "info", odd, "--json").stdout)
+        self.assertEqual(found["series"][0]["size"], self.truth["size"])
+        self.ok("scan", "segment", odd, "--out", self.folder / "labels.nrrd")
+        self.refused("scan", "segment", odd, "--out", self.folder / "again.nrrd", "--save-job",
+                     self.folder / "job.toml", mentions=["no UTF-8"])
+        self.refused("scan", "info", self.folder / os.fsdecode(b"no\xe9ne"), mentions=["no\\xe9ne", "no such file"])
+
     def test_all_resolutions_labels_and_surfaces(self):
         done = self.ok("scan", "case", self.scan, "--table2", "--out", self.folder / "t.handpiece")
         faces = [json.loads(self.ok("case", "info", self.folder / f"t-{p}.handpiece", "--json").stdout)["outer"]["faces"]

@@ -3518,6 +3518,18 @@
         <translation>歯の長さが平均的な第一大臼歯と同じ 21 mm になる大きさ</translation>
     </message>
     <message>
+        <source>Read the slices from the other end</source>
+        <translation>スライスを反対側の端から読む</translation>
+    </message>
+    <message>
+        <source>The slices are numbered from the other end</source>
+        <translation>スライスの番号が反対側の端から付いている</translation>
+    </message>
+    <message>
+        <source>For a tooth that came out as its mirror image: where the files do not tell, nobody can see it in the numbers</source>
+        <translation>歯が鏡像になったとき用。ファイルに向きの記載がないと、数値からは分からない</translation>
+    </message>
+    <message>
         <source>These are tissues already, not grey values</source>
         <translation>濃度値ではなく、組織のラベルである</translation>
     </message>

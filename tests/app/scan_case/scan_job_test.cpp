@@ -94,6 +94,16 @@ TEST(ScanJobFile, EachDecisionAloneComesBack) {
     two.enamelFrom = 7.0;
     EXPECT_EQ(scanJobFromToml(toToml(two), "x").enamelFrom, 7.0);
     EXPECT_EQ(scanJobFromToml(toToml(two), "x").segmentation.marks.size(), 1u);
+    ScanJob three;
+    three.reverseSlices = true;
+    three.regionMm = std::array{Vec3(1, 2.5, 3), Vec3(-4, 5, 6)};
+    const ScanJob again = scanJobFromToml(toToml(three), "x");
+    EXPECT_TRUE(again.reverseSlices);
+    EXPECT_EQ(again.regionMm, three.regionMm);
+    EXPECT_FALSE(scanJobFromToml(toToml(two), "x").reverseSlices);
+    const volume::ReadSettings settings = readSettings(again);
+    EXPECT_TRUE(settings.reverseSlices);
+    EXPECT_EQ(settings.regionMm, three.regionMm);
 }
 
 TEST(ScanJobFile, TellsWhatIsWrong) {
@@ -101,6 +111,8 @@ TEST(ScanJobFile, TellsWhatIsWrong) {
     EXPECT_THAT(told(""), HasSubstr("format"));
     EXPECT_THAT(told("format = 1\nspacing_mm = [1, 2]\n"), HasSubstr("spacing_mm"));
     EXPECT_THAT(told("format = 1\nspacing_mm = [1, 2, 0]\n"), HasSubstr("not above zero"));
+    EXPECT_THAT(told("format = 1\nregion_mm = [1, 2, 0]\n"), HasSubstr("region_mm has 3 numbers"));
+    EXPECT_THAT(told("format = 1\nregion_mm = [1, 2, 0, 1, 1, nan]\n"), HasSubstr("region_mm"));
     EXPECT_THAT(told("format = 1\npercents = []\n"), HasSubstr("percent"));
     EXPECT_THAT(told("format = 1\nlabel_order = [1.5]\n"), HasSubstr("label_order"));
     EXPECT_THAT(told("format = 1\n[placing]\nocclusal = [0, 0, 0]\n"), HasSubstr("no direction"));
@@ -130,6 +142,22 @@ volume::Labels simpleTooth() {
                 if (within(1.2, 1.0, 3.0)) label = 4;
             }
     return labels;
+}
+
+TEST(ScanJobFile, ANameThatIsNoUtf8IsReadAndNotKept) {
+    const test::TemporaryFolder folder;
+    ScanJob job, other;
+    job.source = folder.path() / "Z\xe4hne.nrrd";
+    other.source = folder.path() / "Z\xe5hne.nrrd";
+    EXPECT_NE(toToml(job), toToml(other));
+    EXPECT_THAT(errorOf([&] { writeScanJob(job, folder.path() / "job.toml"); }), HasSubstr("no UTF-8"));
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "job.toml"));
+    volume::writeLabels(simpleTooth(), job.source);
+    job.isLabels = true;
+    job.reverseSlices = true;
+    const ScanResult result = runScanJob(job, {}, nullptr, ScanStage::read);
+    EXPECT_EQ(result.labels->values.front(), 0);
+    EXPECT_THAT(result.notes(), ::testing::Contains(HasSubstr("read from the other end")));
 }
 
 TEST(ScanJobFile, IsForItsOwnersEyes) {

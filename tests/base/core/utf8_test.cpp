@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "handpiece/base/core/utf8.h"
+#include "handpiece/base/core/error.h"
 
 #include <gtest/gtest.h>
 
@@ -47,6 +48,12 @@ TEST(Utf8, EveryCharacterAndNothingElse) {
     EXPECT_EQ(utf8Prefix("a\u68ee\n"), 5u);
     EXPECT_EQ(utf8Prefix("a\u68ee\xff..."), 4u);
     EXPECT_EQ(utf8Prefix("a\xe6\xa3"), 1u);
+    EXPECT_EQ(asUtf8(""), "");
+    EXPECT_EQ(asUtf8("a\u68ee\n"), "a\u68ee\n");
+    EXPECT_EQ(asUtf8("\xff"
+                     "a\u68ee\xe6\xa3"),
+              "\\xffa\u68ee\\xe6\\xa3");
+    EXPECT_STREQ(Error("not there", "caf\xe9").what(), "caf\\xe9: not there");
 }
 
 }  // namespace

@@ -122,6 +122,12 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     notes_->setTextFormat(Qt::PlainText);
     inDetails->addWidget(notes_);
 
+    reverse_ = named(new QCheckBox(tr("Read the slices from the other end"), details_), "scanReverse",
+                     tr("The slices are numbered from the other end"),
+                     tr("For a tooth that came out as its mirror image: where the files do not tell, nobody can see it "
+                        "in the numbers"));
+    inDetails->addWidget(reverse_);
+
     spacingBox_ = new QFrame(details_);
     spacingBox_->setObjectName(QStringLiteral("scanSpacing"));
     auto* inSpacing = new QVBoxLayout(spacingBox_);
@@ -184,7 +190,12 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
         decide([&](scan_case::ScanJob& job) {
             job.series = this->model().series()[static_cast<std::size_t>(at)].id;
             job.spacingMm.reset();
+            job.reverseSlices = false;
+            job.regionMm.reset();
         });
+    });
+    connect(reverse_, &QCheckBox::toggled, this, [this](bool on) {
+        if (!showing_) decide([on](scan_case::ScanJob& job) { job.reverseSlices = on; });
     });
     connect(labels_, &QCheckBox::toggled, this, [this](bool on) {
         if (!showing_) decide([on](scan_case::ScanJob& job) { job.isLabels = on; });
@@ -295,10 +306,12 @@ void ChoosePage::showDetails() {
         }
         what_->setText(lines.join(QLatin1Char('\n')));
         QStringList notes;
-        for (const std::string& text : series->notes)
+        // What was read says more than what was found: how, for instance, it was made to fit.
+        for (const std::string& text : model().scan() ? model().scan()->scan->series.notes : series->notes)
             notes << QStringLiteral("•  ") + QString::fromStdString(text);
         notes_->setText(notes.join(QLatin1Char('\n')));
         notes_->setVisible(!notes.isEmpty());
+        reverse_->setVisible(series->slices > 1);
         // Many programs write 1 mm where they know nothing.
         const bool isOdd = series->isSpacingKnown && series->spacingMm.maxCoeff() >= kOddMm;
         spacingWhy_->setText(
@@ -325,6 +338,7 @@ void ChoosePage::showDetails() {
 
 void ChoosePage::showJob() {
     showing_ = true;
+    reverse_->setChecked(model().job().reverseSlices);
     labels_->setChecked(model().job().isLabels);
     const auto& source = model().job().source;
     dropText_->setText(source.empty()

@@ -53,7 +53,7 @@ class ChoosePage : public ScanPage {
     QListWidget* list_;
     DecimalField *within_, *between_;
     QPushButton* estimate_;
-    QCheckBox* labels_;
+    QCheckBox *reverse_, *labels_;
     bool showing_ = false;
 };
 

@@ -25,6 +25,8 @@ ScanJob readPart(const ScanJob& job) {
     part.source = job.source;
     part.series = job.series;
     part.spacingMm = job.spacingMm;
+    part.reverseSlices = job.reverseSlices;
+    part.regionMm = job.regionMm;
     part.isLabels = job.isLabels;
     part.labelOrder = job.labelOrder;
     return part;
@@ -247,10 +249,10 @@ void ScanModel::next() {
             begin(
                 work, key,
                 [spacing, job](const core::Progress& progress) {
-                    volume::ReadSettings settings;
-                    settings.series = job.series;
+                    volume::ReadSettings settings = scan_case::readSettings(job);
                     settings.takeLargest = true;
                     settings.spacingMm = *spacing;
+                    settings.regionMm.reset();  // in millimetres, which are what is looked for
                     const volume::Scan scan = volume::readScan(job.source, settings, core::part(progress, 0.0, 0.5));
                     *spacing *= scaleByMolar(scan.volume, core::part(progress, 0.5, 1.0));
                 },
@@ -266,10 +268,8 @@ void ScanModel::next() {
             begin(
                 work, key,
                 [shown, job](const core::Progress& progress) {
-                    volume::ReadSettings settings;
-                    settings.series = job.series;
+                    volume::ReadSettings settings = scan_case::readSettings(job);
                     settings.takeLargest = true;
-                    settings.spacingMm = job.spacingMm;
                     volume::Scan scan = volume::readScan(job.source, settings, core::part(progress, 0.0, 0.9));
                     *shown = shownScan(std::move(scan), job, core::part(progress, 0.9, 1.0));
                 },

@@ -43,10 +43,8 @@ core::Progress listenerOf(const ScanProgress& progress, ScanStage stage) {
 void read(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     if (job.source.empty()) throw core::Error("no scan is named", "scan", "give a file, a folder, a ZIP or a DICOMDIR");
-    volume::ReadSettings settings;
-    settings.series = job.series;
-    settings.spacingMm = job.spacingMm;
-    volume::Scan scan = volume::readScan(job.source, settings, core::part(progress, 0.0, job.isLabels ? 0.9 : 1.0));
+    volume::Scan scan =
+        volume::readScan(job.source, readSettings(job), core::part(progress, 0.0, job.isLabels ? 0.9 : 1.0));
     if (job.isLabels) {
         volume::Labels labels = volume::toLabels(scan.volume, job.source.filename().string());
         if (!job.labelOrder.empty())
@@ -248,6 +246,16 @@ std::string_view nameOf(ScanStage stage) {
 
 double ScanTimings::total() const {
     return std::accumulate(seconds.begin(), seconds.end(), 0.0);
+}
+
+volume::ReadSettings readSettings(const ScanJob& job) {
+    volume::ReadSettings settings;
+    settings.series = job.series;
+    settings.spacingMm = job.spacingMm;
+    settings.reverseSlices = job.reverseSlices;
+    settings.isLabels = job.isLabels;
+    settings.regionMm = job.regionMm;
+    return settings;
 }
 
 std::vector<std::string> ScanResult::notes() const {

@@ -26,10 +26,12 @@ namespace handpiece::scan_case {
 /// `intraoral` and `tissuesFile` stay in the job's own file: no case, report or message of success holds them.
 struct ScanJob {
     // What is read.
-    std::filesystem::path source;          ///< file, folder, ZIP or DICOMDIR
-    std::string series;                    ///< as volume::Series::id; empty: the only one
-    std::optional<core::Vec3> spacingMm;   ///< wins over the file's
-    bool isLabels = false;                 ///< its values are volume::Labels' numbers
+    std::filesystem::path source;                       ///< file, folder, ZIP or DICOMDIR
+    std::string series;                                 ///< as volume::Series::id; empty: the only one
+    std::optional<core::Vec3> spacingMm;                ///< wins over the file's
+    bool reverseSlices = false;                         ///< as volume::ReadSettings
+    std::optional<std::array<core::Vec3, 2>> regionMm;  ///< as volume::ReadSettings
+    bool isLabels = false;                              ///< its values are volume::Labels' numbers
     std::vector<std::uint8_t> labelOrder;  ///< what the file's numbers 0, 1, 2, ... mean, as volume::Labels' numbers;
                                            ///< empty: they are those
     // Which tooth, of what.
@@ -53,13 +55,17 @@ struct ScanJob {
     std::size_t faces = 0;         ///< of all surfaces together, instead of percents; 0: by percents
 };
 inline constexpr double kSceneryReachMm = 8.0;
+/// How its scan is read.
+[[nodiscard]] volume::ReadSettings readSettings(const ScanJob& job);
 
-/// As TOML, every decision with its unit in its name; what is as by default is left out.
+/// As TOML, every decision with its unit in its name; what is as by default is left out. Bytes of a name that are no
+/// UTF-8 are written out in it: such a text only tells jobs apart.
 [[nodiscard]] std::string toToml(const ScanJob& job);
 /// Throws core::Error naming `where`, line and key for what is unknown or out of range. Relative paths are kept as they
 /// stand.
 [[nodiscard]] ScanJob scanJobFromToml(std::string_view text, const std::string& where);
 [[nodiscard]] ScanJob readScanJob(const std::filesystem::path& file);
+/// Throws core::Error, also for a name that is no UTF-8.
 void writeScanJob(const ScanJob& job, const std::filesystem::path& file);
 
 enum class ScanStage { read, segment, surface, place, decimate, check };
@@ -114,7 +120,7 @@ struct ScanResult {
 
 /// Does the job up to and with stage `last`. Results of `before` are taken over where no decision that they depend on
 /// has changed, so a wizard passes its last result and waits for what it changed only. A scan read elsewhere is handed
-/// in as before->scan with before->job holding the same source, series and spacing. Throws core::Error, also where a
+/// in as before->scan with before->job holding the same decisions of what is read. Throws core::Error, also where a
 /// case would not pass cases::checkCase().
 [[nodiscard]] ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress = {},
                                     const ScanResult* before = nullptr, ScanStage last = ScanStage::check);

@@ -11,6 +11,7 @@
 #include "handpiece/base/config/table.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/utf8.h"
 #include "handpiece/base/geometry/inspect.h"
 
 namespace handpiece::scan_case {
@@ -24,11 +25,7 @@ constexpr double kMaxMm = 1e4;
 constexpr std::uint64_t kMaxJobBytes = 16u << 20;  // marks by hand may be many
 
 std::string quoted(const std::string& text) {
-    try {
-        return nlohmann::json(text).dump();  // TOML's basic strings escape as JSON's do
-    } catch (const nlohmann::json::type_error&) {
-        throw core::Error("this name cannot be kept in a job file: it is no UTF-8", "job", "rename the file or folder");
-    }
+    return nlohmann::json(core::asUtf8(text)).dump();  // TOML's basic strings escape as JSON's do
 }
 
 std::string number(double value) {
@@ -206,6 +203,12 @@ std::string readToml(const ScanJob& job) {
     lines.text("source", job.source.string());
     lines.text("series", job.series);
     lines.vector("spacing_mm", job.spacingMm);
+    lines.flag("reverse_slices", job.reverseSlices, false);
+    if (job.regionMm) {
+        const auto& [a, b] = *job.regionMm;
+        lines.put("region_mm", fmt::format("[{}, {}, {}, {}, {}, {}]", number(a.x()), number(a.y()), number(a.z()),
+                                           number(b.x()), number(b.y()), number(b.z())));
+    }
     lines.flag("labels", job.isLabels, false);
     if (!job.labelOrder.empty()) lines.put("label_order", fmt::format("[{}]", fmt::join(job.labelOrder, ", ")));
     return lines.bare();
@@ -272,15 +275,25 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
     if (const std::int64_t format = table.integer("format").value_or(0); format != kFormat)
         table.fail(fmt::format("the job's format is {}, this program reads format {}", format, kFormat),
                    fmt::format("add the line: format = {}", kFormat), "format");
-    table.allowOnly({"format", "source", "series", "spacing_mm", "labels", "label_order", "smooth", "name", "kind",
-                     "fdi", "tissues", "scenery", "percents", "faces", "tooth_from", "enamel_from", "segmentation",
-                     "intraoral", "placing"});
+    table.allowOnly({"format",       "source",      "series",   "spacing_mm", "reverse_slices", "region_mm",
+                     "labels",       "label_order", "smooth",   "name",       "kind",           "fdi",
+                     "tissues",      "scenery",     "percents", "faces",      "tooth_from",     "enamel_from",
+                     "segmentation", "intraoral",   "placing"});
     ScanJob job;
     job.source = table.text("source").value_or("");
     job.series = table.text("series").value_or("");
     job.spacingMm = vectorOf(table, "spacing_mm");
     if (job.spacingMm && !(job.spacingMm->minCoeff() > 0.0))
         table.fail("a spacing is not above zero", "give millimetres between voxels", "spacing_mm");
+    job.reverseSlices = table.flag("reverse_slices").value_or(false);
+    if (table.has("region_mm")) {
+        const std::vector<double> v = table.numbers("region_mm");
+        if (v.size() != 6)
+            table.fail(fmt::format("region_mm has {} numbers", v.size()), "give two corners", "region_mm");
+        for (const double x : v)
+            (void)checked(table, "region_mm", x, -kMaxMm, kMaxMm);
+        job.regionMm = std::array{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
+    }
     job.isLabels = table.flag("labels").value_or(false);
     for (const double v : table.numbers("label_order")) {
         if (!(v >= 0.0 && v <= 255.0) || v != std::floor(v))
@@ -339,6 +352,11 @@ ScanJob readScanJob(const std::filesystem::path& file) {
 }
 
 void writeScanJob(const ScanJob& job, const std::filesystem::path& file) {
+    for (const std::string& named :
+         {job.source.string(), job.intraoral.string(), job.tissuesFile.string(), job.name, job.kind, job.series})
+        if (core::utf8Prefix(named) != named.size())
+            throw core::Error("a name of this job cannot be kept in its file: it is no UTF-8", file.string(),
+                              "rename the file or folder, or do without the job's file");
     // It names the folder of a patient.
     core::writeFile(file, toToml(job), {.ownerOnly = true});
 }

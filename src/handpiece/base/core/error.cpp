@@ -3,6 +3,8 @@
 
 #include <utility>
 
+#include "handpiece/base/core/utf8.h"
+
 namespace handpiece::core {
 
 Error::Error(std::string what, std::string where, std::string remedy)
@@ -10,6 +12,7 @@ Error::Error(std::string what, std::string where, std::string remedy)
     if (!where_.empty()) message_ = where_ + ": ";
     message_ += problem_;
     if (!remedy_.empty()) message_ += " (" + remedy_ + ")";
+    message_ = asUtf8(message_);
 }
 
 Error Error::as(std::string id, std::vector<std::string> arguments) && {

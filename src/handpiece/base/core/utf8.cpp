@@ -28,4 +28,17 @@ std::size_t utf8Prefix(std::string_view text) noexcept {
     return at;
 }
 
+std::string asUtf8(std::string_view text) {
+    constexpr std::string_view kDigits = "0123456789abcdef";
+    std::string out;
+    for (std::size_t good = utf8Prefix(text); good < text.size(); good = utf8Prefix(text)) {
+        const auto odd = static_cast<unsigned char>(text[good]);
+        out.append(text.substr(0, good)).append("\\x");
+        out += kDigits[odd >> 4];
+        out += kDigits[odd & 15u];
+        text.remove_prefix(good + 1);
+    }
+    return out.append(text);
+}
+
 }  // namespace handpiece::core

@@ -19,18 +19,23 @@ namespace handpiece::volume {
 
 using Files = std::shared_ptr<const FileSet>;
 
+/// Where slice `k` goes; asked for in order, right before it is written: what was asked for before is whole by then.
+using SlicePlace = std::function<float*(int k)>;
+
 struct Candidate {
     Series series;  ///< without id, size, spacing and thumbnail: those come from the grid
     Grid grid;      ///< may be left-handed; slices are turned round once they are read
     /// From one slice to the next [mm], where that is not along the normal (a tilted gantry); else zero.
     core::Vec3 stepMm = core::Vec3::Zero();
+    bool isResampled = false;            ///< its slices are made of those of the files
     std::string where;                   ///< file or folder, for messages
     std::string spacingProblem;          ///< why the spacing is not known
+    std::string sideProblem;             ///< why nobody can tell it from its mirror image; empty: it is told
     std::optional<core::Error> problem;  ///< why it cannot be read, though it can be shown
     /// One slice, from several threads at once.
     std::function<void(int k, float* to)> slice;
-    /// All of them, where that is faster than one by one; may be empty.
-    std::function<void(float* to, const core::Progress& progress)> load;
+    /// `count` of them from `first` on, where that is faster than one by one; may be empty.
+    std::function<void(int first, int count, const SlicePlace& place, const core::Progress& progress)> load;
 };
 
 /// What is in the files; problems of files that others make up for become notes. Throws core::Error when nothing fits.

@@ -377,8 +377,9 @@ DicomHeader::FrameStep DicomHeader::frameStep() const {
     const bool hasOwn = std::any_of(frame.begin(), frame.end(), [](const DicomPlace& one) { return one.positionMm; });
     if (frames < 2 || hasOwn || !place.positionMm || !place.orientation) return {};
     if (gridOffsetsMm.size() == static_cast<std::size_t>(frames)) return {"GridFrameOffsetVector"};
-    if (const double mm = place.betweenMm.value_or(0.0); mm != 0.0) return {"SpacingBetweenSlices", mm};
-    if (const double mm = place.thicknessMm.value_or(0.0); mm != 0.0) return {"SliceThickness", mm};
+    // Few programs write a sign; a minus was meant.
+    if (const double mm = place.betweenMm.value_or(0.0); mm != 0.0) return {"SpacingBetweenSlices", mm, mm < 0.0};
+    if (const double mm = place.thicknessMm.value_or(0.0); mm != 0.0) return {"SliceThickness", mm, false};
     return {};
 }
 

@@ -47,6 +47,7 @@ struct DicomHeader {
     struct FrameStep {
         const char* by = nullptr;  ///< the element that tells it; null: each has its own place, or nothing tells it
         double mm = 0.0;           ///< along the normal; 0: as `gridOffsetsMm` says
+        bool tellsSide = true;     ///< else the others may as well lie on the other side of the first
     };
     [[nodiscard]] FrameStep frameStep() const;
     [[nodiscard]] DicomPlace placeOf(int index) const;

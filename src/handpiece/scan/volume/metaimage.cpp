@@ -111,10 +111,13 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
     }
 
     core::Mat3 axes = core::Mat3::Identity();
-    if (const std::vector<double> m = numbers({"TransformMatrix", "Rotation", "Orientation"}); m.size() == 9)
+    if (const std::vector<double> m = numbers({"TransformMatrix", "Rotation", "Orientation"}); m.size() == 9) {
         for (int axis = 0; axis < 3; ++axis)
             for (int i = 0; i < 3; ++i)
                 axes(i, axis) = m[static_cast<std::size_t>(3 * axis + i)];
+    } else {
+        out.sideProblem = "its header tells no TransformMatrix";
+    }
     if (const std::vector<double> s = numbers({"ElementSpacing", "ElementSize"}); s.size() == 3) {
         const core::Vec3 spacing(s[0], s[1], s[2]);
         setSpacing(out, spacing);

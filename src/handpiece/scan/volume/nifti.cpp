@@ -186,6 +186,8 @@ Candidate openNifti(const Files& files, std::size_t index) {
         const core::Vec3 toLps(-1, -1, 1);  // NIfTI's world is right, front, head
         setVectors(out, unit * toLps.asDiagonal() * neighbours);
         out.grid.originMm = unit * toLps.cwiseProduct(origin);
+    } else {
+        out.sideProblem = "its header tells no orientation (neither qform nor sform)";
     }
     setSamples(out, std::move(samples));
     return out;

@@ -88,11 +88,14 @@ std::vector<std::string_view> vectorsOf(std::string_view text) {
     return parts;
 }
 
-/// From the space that is named to left-posterior-superior, or nothing for scanner's and unknown axes.
+/// From the space that is named to left-posterior-superior, or to axes of the same hand where it is no patient's;
+/// nothing for what is not known.
 std::optional<core::Vec3> toLps(const std::string& space) {
     if (space == "left-posterior-superior" || space == "lps") return core::Vec3(1, 1, 1);
     if (space == "right-anterior-superior" || space == "ras") return core::Vec3(-1, -1, 1);
     if (space == "left-anterior-superior" || space == "las") return core::Vec3(1, -1, 1);
+    if (space == "scanner-xyz" || space == "3d-right-handed") return core::Vec3(1, 1, 1);
+    if (space == "3d-left-handed") return core::Vec3(1, 1, -1);
     return {};
 }
 
@@ -217,9 +220,13 @@ Candidate openNrrd(const Files& files, std::size_t index) {
             neighbours.col(axis) = unit * v->cwiseProduct(flip.value_or(core::Vec3::Ones()));
         }
         setVectors(out, neighbours);
+        if (!flip)
+            out.sideProblem = space.empty() ? "its header does not name the space of its directions"
+                                            : "the space that its header names is not known";
         if (const auto origin = vectorOf(field({"space origin"})); origin && origin->allFinite())
             out.grid.originMm = unit * origin->cwiseProduct(flip.value_or(core::Vec3::Ones()));
     } else {
+        out.sideProblem = "its header tells no space directions";
         const std::vector<std::string_view> spacings = wordsOf(fields["spacings"]);
         if (spacings.size() == 3) {
             core::Vec3 spacing;

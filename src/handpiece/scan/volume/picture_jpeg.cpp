@@ -41,7 +41,13 @@ jpeg_error_mgr* quiet(Problem& problem) {
 struct Lies {
     int columns = 0, rows = 0, orientation = 1;
     bool isColour = false;
+    double xMm = 0.0, yMm = 0.0;  ///< by the density; 0: none is told
 };
+
+/// libjpeg makes no grey of inks. Adobe's programs write them upside down, and those alone write them.
+bool isInks(const jpeg_decompress_struct& state) {
+    return state.jpeg_color_space == JCS_CMYK || state.jpeg_color_space == JCS_YCCK;
+}
 
 /// Into `to` when there is one; returns what is wrong, or null.
 const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::vector<std::byte>& data, Lies& lies,
@@ -59,6 +65,11 @@ const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::v
         lies.columns = static_cast<int>(state.image_width);
         lies.rows = static_cast<int>(state.image_height);
         lies.isColour = state.num_components != 1;
+        const double unitMm = state.density_unit == 1 ? 25.4 : state.density_unit == 2 ? 10.0 : 0.0;
+        if (state.saw_JFIF_marker && state.X_density > 0 && state.Y_density > 0) {
+            lies.xMm = unitMm / state.X_density;
+            lies.yMm = unitMm / state.Y_density;
+        }
         for (jpeg_saved_marker_ptr one = state.marker_list; one && lies.orientation == 1; one = one->next)
             lies.orientation = exifOrientation({one->data, one->data_length});
         jpeg_destroy_decompress(&state);
@@ -68,7 +79,8 @@ const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::v
         jpeg_destroy_decompress(&state);
         return "its size changed";
     }
-    state.out_color_space = JCS_GRAYSCALE;
+    const bool hasInks = isInks(state), isUpsideDown = state.saw_Adobe_marker;
+    state.out_color_space = hasInks ? JCS_CMYK : JCS_GRAYSCALE;
     state.dct_method = JDCT_ISLOW;
     jpeg_start_decompress(&state);
     while (state.output_scanline < state.output_height) {
@@ -76,8 +88,13 @@ const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::v
         JSAMPROW rows[1] = {line};
         if (jpeg_read_scanlines(&state, rows, 1) != 1) break;
         float* const at = to + y * state.output_width;
-        for (std::size_t x = 0; x < state.output_width; ++x)
-            at[x] = static_cast<float>(line[x]);
+        for (std::size_t x = 0; x < state.output_width; ++x) {
+            const auto ink = [&](std::size_t n) {
+                const unsigned value = line[4 * x + n];
+                return isUpsideDown ? 255 - value : value;
+            };
+            at[x] = hasInks ? greyOfInks(ink(0), ink(1), ink(2), ink(3)) : static_cast<float>(line[x]);
+        }
     }
     const long warnings = state.err->num_warnings;
     jpeg_destroy_decompress(&state);
@@ -127,6 +144,8 @@ PictureInfo jpegInfo(Input& input) {
     PictureInfo info;
     info.columns = isTransposed ? lies.rows : lies.columns, info.rows = isTransposed ? lies.columns : lies.rows;
     info.isColour = lies.isColour;
+    if (lies.xMm > 0.0 && lies.yMm > 0.0)
+        info.densityMm = isTransposed ? core::Vec2(lies.yMm, lies.xMm) : core::Vec2(lies.xMm, lies.yMm);
     return info;
 }
 
@@ -137,7 +156,7 @@ void readJpeg(Input& input, const PictureInfo& info, float* to) {
     const bool isSame = orientation.isTransposed() ? lies.rows == info.columns && lies.columns == info.rows
                                                    : lies.columns == info.columns && lies.rows == info.rows;
     if (!isSame) throw damagedPicture(input, "its size changed");
-    std::vector<unsigned char> line(static_cast<std::size_t>(lies.columns));
+    std::vector<unsigned char> line(4 * static_cast<std::size_t>(lies.columns));  // four where they are inks
     std::vector<float> turned;
     if (!orientation.isUpright())
         turned.resize(static_cast<std::size_t>(lies.columns) * static_cast<std::size_t>(lies.rows));

@@ -57,6 +57,10 @@ bool decode(Stream& stream, png_structp& png, png_infop& head, PictureInfo& info
         info.rows = height;
         info.bits = depth == 16 ? 16 : 8;
         info.isColour = (type & PNG_COLOR_MASK_COLOR) != 0;
+        png_uint_32 x = 0, y = 0;
+        int unit = PNG_RESOLUTION_UNKNOWN;
+        if (png_get_pHYs(png, head, &x, &y, &unit) != 0 && unit == PNG_RESOLUTION_METER && x > 0 && y > 0)
+            info.densityMm = core::Vec2(1000.0 / x, 1000.0 / y);
         return true;
     }
     if (columns != info.columns || height != info.rows) png_error(png, "its size changed");

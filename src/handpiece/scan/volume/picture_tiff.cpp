@@ -96,7 +96,7 @@ struct Page {
     Orientation orientation{};
     SampleType type = SampleType::u8;
     std::uint16_t samples = 1, bits = 8, photometric = PHOTOMETRIC_MINISBLACK;
-    bool isReduced = false;
+    bool isReduced = false, isInks = false;
     [[nodiscard]] int seenColumns() const { return orientation.isTransposed() ? rows : columns; }
     [[nodiscard]] int seenRows() const { return orientation.isTransposed() ? columns : rows; }
 };
@@ -121,6 +121,23 @@ Page pageOf(TIFF* tiff, const Input& input) {
     page.rows = static_cast<int>(rows);
     page.isReduced = (kind & FILETYPE_REDUCEDIMAGE) != 0;
     const bool isColour = page.samples >= 3;
+    std::uint16_t compression = COMPRESSION_NONE, inks = INKSET_CMYK;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_COMPRESSION, &compression);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_INKSET, &inks);
+    page.isInks = page.photometric == PHOTOMETRIC_SEPARATED;
+    if (page.isInks && (inks != INKSET_CMYK || page.samples != 4))
+        throw core::Error("its pixels are inks other than cyan, magenta, yellow and black", input.where(),
+                          "save it as 8-bit or 16-bit grey");
+    // Of a JPEG within, libtiff makes red, green and blue.
+    const bool isJpeg = page.photometric == PHOTOMETRIC_YCBCR && compression == COMPRESSION_JPEG;
+    if (isJpeg) TIFFSetField(tiff, TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+    if (isColour && !page.isInks && !isJpeg && page.photometric != PHOTOMETRIC_RGB &&
+        page.photometric != PHOTOMETRIC_MINISBLACK && page.photometric != PHOTOMETRIC_MINISWHITE)
+        throw core::Error(fmt::format("its colours are of a kind that is not read ({})",
+                                      page.photometric == PHOTOMETRIC_YCBCR    ? "YCbCr"
+                                      : page.photometric == PHOTOMETRIC_CIELAB ? "CIE L*a*b*"
+                                                                               : "neither grey, RGB nor CMYK"),
+                          input.where(), "save it as 8-bit or 16-bit grey");
     if ((isColour && (page.bits != 8 || planar != PLANARCONFIG_CONTIG)) ||
         (page.samples == 2 && planar != PLANARCONFIG_CONTIG) || page.samples > 4)
         throw core::Error("its pixels are of a kind that is not read", input.where(),
@@ -192,9 +209,30 @@ std::optional<core::Vec3> imageJSpacing(TIFF* tiff) {
     return spacing;
 }
 
+/// As TIFF itself tells it: dots an inch or a centimetre. ImageJ writes other units there.
+std::optional<core::Vec2> densityOf(TIFF* tiff) {
+    float x = 0.0f, y = 0.0f;
+    std::uint16_t unit = RESUNIT_INCH;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_RESOLUTIONUNIT, &unit);
+    const double mm = unit == RESUNIT_INCH ? 25.4 : unit == RESUNIT_CENTIMETER ? 10.0 : 0.0;
+    const char* text = nullptr;
+    const bool isImageJ = TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) == 1 && text &&
+                          std::string_view(text).starts_with("ImageJ=");
+    if (mm == 0.0 || isImageJ || TIFFGetField(tiff, TIFFTAG_XRESOLUTION, &x) != 1 ||
+        TIFFGetField(tiff, TIFFTAG_YRESOLUTION, &y) != 1 || !(x > 0.0f) || !(y > 0.0f))
+        return {};
+    return core::Vec2(mm / static_cast<double>(x), mm / static_cast<double>(y));
+}
+
 /// A row or a tile to grey numbers.
 void toGrey(const Page& page, const std::uint16_t* const palette[3], const std::byte* from, std::size_t count,
             float* to) {
+    if (page.isInks) {
+        const auto* inks = reinterpret_cast<const std::uint8_t*>(from);
+        for (std::size_t i = 0; i < count; ++i, inks += page.samples)
+            to[i] = greyOfInks(inks[0], inks[1], inks[2], inks[3]);
+        return;
+    }
     if (page.samples >= 3) {
         const auto* rgb = reinterpret_cast<const std::uint8_t*>(from);
         for (std::size_t i = 0; i < count; ++i, rgb += page.samples)
@@ -293,7 +331,11 @@ PictureInfo tiffInfo(Input& input) {
     info.bits = first.bits;
     info.isColour = first.samples >= 3;
     info.spacingMm = imageJSpacing(tiff.get());
-    if (info.spacingMm && first.orientation.isTransposed()) std::swap(info.spacingMm->x(), info.spacingMm->y());
+    info.densityMm = densityOf(tiff.get());
+    if (first.orientation.isTransposed()) {
+        if (info.spacingMm) std::swap(info.spacingMm->x(), info.spacingMm->y());
+        if (info.densityMm) std::swap(info.densityMm->x(), info.densityMm->y());
+    }
     bool hasOneDirectory = true;
     while (TIFFReadDirectory(tiff.get()) == 1) {
         hasOneDirectory = false;
@@ -313,12 +355,12 @@ PictureInfo tiffInfo(Input& input) {
     return info;
 }
 
-void readTiff(Input& input, const PictureInfo& info, int first, int count, float* to, const core::Progress& progress) {
+void readTiff(Input& input, const PictureInfo& info, int first, int count, const SlicePlace& place,
+              const core::Progress& progress) {
     Stream stream;
     stream.input = &input;
     const Tiff tiff = open(stream, "rm");
     if (!tiff) throw damagedPicture(input, stream.text.empty() ? "this is no TIFF" : stream.text);
-    const std::size_t each = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
     int index = -1, done = 0;
     if (info.pages > 1 && TIFFNumberOfDirectories(tiff.get()) == 1) {
         TIFFSetDirectory(tiff.get(), 0);
@@ -328,7 +370,7 @@ void readTiff(Input& input, const PictureInfo& info, int first, int count, float
             first + count > stack->pages)
             throw damagedPicture(input, "its size changed");
         for (; done < count; core::report(progress, static_cast<double>(++done) / count))
-            readRaw(tiff.get(), input, *stack, page, first + done, to + static_cast<std::size_t>(done) * each);
+            readRaw(tiff.get(), input, *stack, page, first + done, place(first + done));
         return;
     }
     do {
@@ -337,7 +379,7 @@ void readTiff(Input& input, const PictureInfo& info, int first, int count, float
         if (++index < first) continue;
         if (page.seenColumns() != info.columns || page.seenRows() != info.rows)
             throw damagedPicture(input, "its size changed");
-        readPage(tiff.get(), stream, page, to + static_cast<std::size_t>(done) * each);
+        readPage(tiff.get(), stream, page, place(first + done));
         core::report(progress, static_cast<double>(++done) / count);
         if (done == count) return;
     } while (TIFFReadDirectory(tiff.get()) == 1);

@@ -22,6 +22,8 @@ struct PictureInfo {
     bool isColour = false;                ///< turned to grey
     /// Where the file says it in a way that can be trusted (ImageJ's stacks): x, y, z; z 0 where it does not tell.
     std::optional<core::Vec3> spacingMm;
+    /// A pixel's size by its density, which may be a printer's that has nothing to do with the scan.
+    std::optional<core::Vec2> densityMm;
 };
 
 [[nodiscard]] PictureInfo bmpInfo(Input& input);
@@ -33,7 +35,8 @@ void readBmp(Input& input, const PictureInfo& info, float* to);
 void readJpeg(Input& input, const PictureInfo& info, float* to);
 void readPng(Input& input, const PictureInfo& info, float* to);
 /// Pages first .. first + count - 1, one after another.
-void readTiff(Input& input, const PictureInfo& info, int first, int count, float* to, const core::Progress& progress);
+void readTiff(Input& input, const PictureInfo& info, int first, int count, const SlicePlace& place,
+              const core::Progress& progress);
 
 /// Grey values as a file: 8 bit, or 16 where the format has them (PNG, TIFF).
 [[nodiscard]] std::vector<std::byte> bmpBytes(std::span<const std::uint8_t> grey, int columns, int rows);
@@ -47,6 +50,11 @@ void readTiff(Input& input, const PictureInfo& info, int first, int count, float
 [[nodiscard]] core::Error damagedPicture(const Input& input, const std::string& why);
 /// The whole file, up to what one slice may have.
 [[nodiscard]] std::vector<std::byte> wholeOf(Input& input);
+/// Grey of inks, 255 the most of each.
+[[nodiscard]] inline float greyOfInks(unsigned cyan, unsigned magenta, unsigned yellow, unsigned black) {
+    const auto left = [&](unsigned ink) { return (255 - ink) * (255 - black); };
+    return static_cast<float>((299 * left(cyan) + 587 * left(magenta) + 114 * left(yellow) + 127500) / 255000);
+}
 /// Grey of a colour; exact where all three are the same.
 [[nodiscard]] inline float greyOf(unsigned red, unsigned green, unsigned blue) {
     return static_cast<float>((299 * red + 587 * green + 114 * blue + 500) / 1000);

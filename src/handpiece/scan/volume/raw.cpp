@@ -99,7 +99,10 @@ void apply(const Description& description, Candidate& candidate) {
         setSpacing(candidate, *description.spacingMm);
     }
     if (description.originMm) candidate.grid.originMm = *description.originMm;
-    if (description.axes) candidate.grid.axes = *description.axes;
+    if (description.axes) {
+        candidate.grid.axes = *description.axes;
+        candidate.sideProblem.clear();
+    }
 }
 
 Candidate openRaw(const Files& files, std::size_t description) {
@@ -136,6 +139,7 @@ Candidate openRaw(const Files& files, std::size_t description) {
     const double needed = static_cast<double>(d.size[0]) * d.size[1] * d.size[2] * static_cast<double>(bytesOf(*type));
     const bool isLonger = static_cast<double>(has) > needed + static_cast<double>(d.headerBytes);
     out.spacingProblem = fmt::format("\"{}\" tells no spacing_mm", files->entries()[description].name);
+    out.sideProblem = "the description of its numbers tells no axes";
     setSamples(out, std::move(samples));
     if (isLonger)
         out.problem = core::Error(

@@ -60,8 +60,17 @@ void makeThumbnail(const float* slice, int columns, int rows, Series& series) {
 }
 
 /// What findSeries and readScan both tell of it.
-Series describe(const Candidate& candidate) {
+Series describe(const Candidate& candidate, bool isReversed = false) {
     Series series = candidate.series;
+    const std::string& why = candidate.sideProblem;
+    series.isSideKnown = why.empty() || candidate.grid.size[2] < 2;
+    if (isReversed)
+        series.notes.push_back("its slices were read from the other end, as was asked for");
+    else if (!series.isSideKnown)
+        series.notes.push_back(
+            fmt::format("left and right may be swapped: {}. If the tooth is a mirror image, have the slices read from "
+                        "the other end (--reverse-slices)",
+                        why));
     series.size = candidate.grid.size;
     series.slices = candidate.grid.size[2];
     series.isSpacingKnown = candidate.spacingProblem.empty();
@@ -69,27 +78,187 @@ Series describe(const Candidate& candidate) {
     return series;
 }
 
-std::uint64_t checkedBytes(const Candidate& candidate, std::uint64_t limitBytes) {
-    const auto& size = candidate.grid.size;
-    const double bytes = static_cast<double>(size[0]) * size[1] * size[2] * sizeof(float);
-    if (bytes > static_cast<double>(limitBytes))
-        throw core::Error(
-            fmt::format("{} x {} x {} voxels need {:.1f} GB of memory, more than the {:.1f} GB that are allowed",
-                        size[0], size[1], size[2], bytes / (1 << 30), static_cast<double>(limitBytes) / (1 << 30)),
-            candidate.where, "crop or halve the scan, or allow more memory; or the header is damaged")
+double bytesOf(const std::array<int, 3>& size) {
+    return static_cast<double>(size[0]) * size[1] * size[2] * sizeof(float);
+}
+
+std::string tooLargeText(const std::array<int, 3>& size, std::uint64_t limitBytes) {
+    constexpr double kGb = 1 << 30;
+    return fmt::format("{} x {} x {} voxels need {:.1f} GB of memory, more than the {:.1f} GB that are allowed",
+                       size[0], size[1], size[2], bytesOf(size) / kGb, static_cast<double>(limitBytes) / kGb);
+}
+
+std::uint64_t checkedBytes(const std::array<int, 3>& size, const std::string& where, std::uint64_t limitBytes) {
+    if (bytesOf(size) > static_cast<double>(limitBytes))
+        throw core::Error(tooLargeText(size, limitBytes), where,
+                          "name a region of it, or crop or halve it in the program that made it; or the header is "
+                          "damaged")
             .as("scan-too-large");
-    return static_cast<std::uint64_t>(bytes);
+    return static_cast<std::uint64_t>(bytesOf(size));
+}
+
+std::array<int, 3> shrunk(const std::array<int, 3>& size, int by) {
+    return {size[0] / by, size[1] / by, size[2] / by};
+}
+
+/// By how much a scan must shrink along each axis to fit; 1 where it fits or no shrinking helps.
+int shrinkingOf(const std::array<int, 3>& size, std::uint64_t limitBytes) {
+    constexpr int kLeastVoxels = 16;
+    if (bytesOf(size) <= static_cast<double>(limitBytes)) return 1;
+    for (const int by : {2, 4}) {
+        const std::array<int, 3> small = shrunk(size, by);
+        if (*std::min_element(small.begin(), small.end()) >= kLeastVoxels &&
+            bytesOf(small) <= static_cast<double>(limitBytes))
+            return by;
+    }
+    return 1;
+}
+
+std::string shrinkingText(const std::array<int, 3>& size, int by, std::uint64_t limitBytes) {
+    return fmt::format("{}: it is read at {} of its size along each axis; a region of it (--region) keeps its fineness",
+                       tooLargeText(size, limitBytes), by == 2 ? "half" : "a quarter");
+}
+
+/// What is read of a scan: whole slices are passed through, these voxels kept, `by` of them made one along each axis.
+struct Window {
+    std::array<int, 3> first{}, count{};
+    int by = 1;
+    [[nodiscard]] bool isAll(const Grid& grid) const { return by == 1 && count == grid.size; }
+};
+
+/// The voxels of `grid` within a box of the scan's frame.
+Window windowOf(const Grid& grid, const core::Vec3& stepMm, const std::array<core::Vec3, 2>& regionMm,
+                const std::string& where) {
+    for (const core::Vec3& corner : regionMm)
+        if (!corner.allFinite())
+            throw core::Error("a region's corner is no number", "region", "give millimetres of the scan's frame");
+    const core::Vec3 step = stepMm.isZero() ? core::Vec3(grid.axes.col(2) * grid.spacingMm.z()) : stepMm;
+    core::Mat3 toMm;
+    toMm << grid.axes.col(0) * grid.spacingMm.x(), grid.axes.col(1) * grid.spacingMm.y(), step;
+    const core::Mat3 toVoxels = toMm.inverse();
+    core::Vec3 low = core::Vec3::Constant(INFINITY), high = core::Vec3::Constant(-INFINITY);
+    for (std::size_t corner = 0; corner < 8; ++corner) {
+        const core::Vec3 mm(regionMm[corner & 1].x(), regionMm[corner >> 1 & 1].y(), regionMm[corner >> 2 & 1].z());
+        const core::Vec3 at = toVoxels * (mm - grid.originMm);
+        low = low.cwiseMin(at);
+        high = high.cwiseMax(at);
+    }
+    Window window;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto a = static_cast<Eigen::Index>(axis);
+        const double from = std::max(0.0, std::floor(low[a])), to = std::min(grid.size[axis] - 1.0, std::ceil(high[a]));
+        if (!(from <= to)) {
+            const core::Vec3 last(grid.size[0] - 1.0, grid.size[1] - 1.0, grid.size[2] - 1.0);
+            const core::Vec3 end = grid.originMm + toMm * last;
+            throw core::Error(
+                "nothing of the scan lies in the region", where,
+                fmt::format("it reaches from {:.1f},{:.1f},{:.1f} to {:.1f},{:.1f},{:.1f} mm", grid.originMm.x(),
+                            grid.originMm.y(), grid.originMm.z(), end.x(), end.y(), end.z()));
+        }
+        window.first[axis] = static_cast<int>(from);
+        window.count[axis] = static_cast<int>(to) - window.first[axis] + 1;
+    }
+    return window;
+}
+
+/// `by` slices of the scan to one of what is kept of it.
+void shrinkSlices(const float* slices, const Grid& whole, const Window& window, bool isLabels, float* to) {
+    const std::size_t columns = static_cast<std::size_t>(whole.size[0]), each = whole.index(0, 0, 1);
+    const auto by = static_cast<std::size_t>(window.by);
+    const double share = 1.0 / static_cast<double>(by * by * by);
+    std::vector<float> block(by * by * by);
+    for (std::size_t j = 0; j < static_cast<std::size_t>(window.count[1] / window.by); ++j)
+        for (std::size_t i = 0; i < static_cast<std::size_t>(window.count[0] / window.by); ++i) {
+            const float* from = slices + (static_cast<std::size_t>(window.first[1]) + j * by) * columns +
+                                static_cast<std::size_t>(window.first[0]) + i * by;
+            std::size_t n = 0;
+            double sum = 0.0;
+            for (std::size_t c = 0; c < by; ++c)
+                for (std::size_t b = 0; b < by; ++b)
+                    for (std::size_t a = 0; a < by; ++a) {
+                        block[n] = from[c * each + b * columns + a];
+                        sum += static_cast<double>(block[n++]);
+                    }
+            if (!isLabels) {
+                *to++ = static_cast<float>(sum * share);
+                continue;
+            }
+            // The commonest; of two that are as common the smaller.
+            std::sort(block.begin(), block.end());
+            float best = block[0];
+            std::size_t most = 0;
+            for (std::size_t at = 0; at < block.size();) {
+                std::size_t end = at + 1;
+                while (end < block.size() && block[end] == block[at])
+                    ++end;
+                if (end - at > most) {
+                    most = end - at;
+                    best = block[at];
+                }
+                at = end;
+            }
+            *to++ = best;
+        }
+}
+
+/// Reads what the window keeps into `values`; slices in the file's order.
+void readWindow(const Candidate& candidate, const Window& window, bool isLabels, float* values,
+                const core::Progress& progress) {
+    const Grid& whole = candidate.grid;
+    const int first = window.first[2], made = window.count[2] / window.by;
+    const std::size_t each = whole.index(0, 0, 1);
+    const std::size_t eachMade =
+        static_cast<std::size_t>(window.count[0] / window.by) * static_cast<std::size_t>(window.count[1] / window.by);
+    if (window.isAll(whole) && candidate.load)
+        return candidate.load(
+            0, made, [&](int k) { return values + static_cast<std::size_t>(k) * each; }, progress);
+    if (candidate.load) {
+        std::vector<float> some(each * static_cast<std::size_t>(window.by));
+        const auto finish = [&](int slice) {
+            shrinkSlices(some.data(), whole, window, isLabels, values + static_cast<std::size_t>(slice) * eachMade);
+        };
+        candidate.load(
+            first, made * window.by,
+            [&](int k) {
+                const int n = k - first;
+                if (n > 0 && n % window.by == 0) finish(n / window.by - 1);
+                return some.data() + static_cast<std::size_t>(n % window.by) * each;
+            },
+            progress);
+        finish(made - 1);
+        return;
+    }
+    std::atomic<int> done{0};
+    core::parallelFor(static_cast<std::size_t>(made), 1, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> some(window.isAll(whole) ? 0 : each * static_cast<std::size_t>(window.by));
+        for (std::size_t k = begin; k < end; ++k) {
+            const int from = first + static_cast<int>(k) * window.by;
+            if (some.empty()) {
+                candidate.slice(from, values + k * each);
+            } else {
+                for (int n = 0; n < window.by; ++n)
+                    candidate.slice(from + n, some.data() + static_cast<std::size_t>(n) * each);
+                shrinkSlices(some.data(), whole, window, isLabels, values + k * eachMade);
+            }
+            core::report(progress, static_cast<double>(++done) / made);
+        }
+    });
+}
+
+void reverseSlices(Volume& volume) {
+    const Grid& grid = volume.grid;
+    const std::size_t each = grid.index(0, 0, 1);
+    for (int k = 0; 2 * k + 1 < grid.size[2]; ++k)
+        std::swap_ranges(volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, k)),
+                         volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, k) + each),
+                         volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, grid.size[2] - 1 - k)));
 }
 
 /// Left-handed grids get their slices in the other order.
 void makeRightHanded(Volume& volume, core::Vec3& stepMm) {
     Grid& grid = volume.grid;
     if (grid.axes.determinant() > 0.0) return;
-    const std::size_t each = grid.index(0, 0, 1);
-    for (int k = 0; 2 * k + 1 < grid.size[2]; ++k)
-        std::swap_ranges(volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, k)),
-                         volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, k) + each),
-                         volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, grid.size[2] - 1 - k)));
+    reverseSlices(volume);
     const core::Vec3 step = stepMm.isZero() ? core::Vec3(grid.axes.col(2) * grid.spacingMm[2]) : stepMm;
     grid.originMm += step * (grid.size[2] - 1);
     grid.axes.col(2) *= -1.0;
@@ -104,20 +273,18 @@ void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, 
     const core::Vec2 shift(local.x() / grid.spacingMm.x(), local.y() / grid.spacingMm.y());
     const core::Vec2 whole = shift * (grid.size[2] - 1);
     if (whole.cwiseAbs().maxCoeff() < kTiltVoxels) return;
-    Candidate larger;
-    larger.grid = grid;
-    larger.where = "the straightened scan";
+    const std::string where = "the straightened scan";
+    Grid to = grid;
     std::array<int, 2> grow{}, first{};
     for (int axis = 0; axis < 2; ++axis) {
         if (!(std::abs(whole[axis]) < 1e5))
-            throw core::Error("its slices lie beside each other, not over each other", larger.where,
+            throw core::Error("its slices lie beside each other, not over each other", where,
                               "read it in the program that made it");
         grow[static_cast<std::size_t>(axis)] = static_cast<int>(std::ceil(std::abs(whole[axis])));
         first[static_cast<std::size_t>(axis)] = whole[axis] < 0.0 ? grow[static_cast<std::size_t>(axis)] : 0;
-        larger.grid.size[static_cast<std::size_t>(axis)] += grow[static_cast<std::size_t>(axis)];
+        to.size[static_cast<std::size_t>(axis)] += grow[static_cast<std::size_t>(axis)];
     }
-    const std::uint64_t bytes = checkedBytes(larger, limitBytes);
-    Grid& to = larger.grid;
+    const std::uint64_t bytes = checkedBytes(to.size, where, limitBytes);
     to.originMm -= grid.axes.col(0) * grid.spacingMm.x() * first[0] + grid.axes.col(1) * grid.spacingMm.y() * first[1];
     const float lowest = *std::min_element(scan.volume.values.begin(), scan.volume.values.end());
     std::vector<float> values(bytes / sizeof(float), lowest);
@@ -451,6 +618,8 @@ std::vector<Series> findSeries(const std::filesystem::path& path, const core::Pr
         if (!candidate.spacingProblem.empty())
             series.notes.push_back(fmt::format("the spacing must be given: {}", candidate.spacingProblem));
         const auto& size = candidate.grid.size;
+        if (const int by = shrinkingOf(size, ReadSettings{}.limitBytes); by > 1 && !candidate.problem)
+            series.notes.push_back(shrinkingText(size, by, ReadSettings{}.limitBytes));
         if (candidate.slice && static_cast<double>(size[0]) * size[1] < 1e8) {
             std::vector<float> slice(static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]));
             try {
@@ -467,48 +636,62 @@ std::vector<Series> findSeries(const std::filesystem::path& path, const core::Pr
 }
 
 Scan load(const Candidate& candidate, const ReadSettings& settings, const core::Progress& progress) {
-    const std::uint64_t bytes = checkedBytes(candidate, settings.limitBytes);
-    if (candidate.problem) throw *candidate.problem;
-    Scan scan;
-    scan.series = describe(candidate);
-    scan.volume.grid = candidate.grid;
+    Grid whole = candidate.grid;
     core::Vec3 step = candidate.stepMm;
+    Window window{{}, whole.size, 1};
+    const auto fit = [&] {
+        window.by = shrinkingOf(window.count, settings.limitBytes);
+        // Of a damaged file there is nothing to shrink.
+        (void)checkedBytes(candidate.problem ? window.count : shrunk(window.count, window.by), candidate.where,
+                           settings.limitBytes);
+    };
+    if (!settings.regionMm) fit();
+    if (candidate.problem) throw *candidate.problem;
+    if (settings.isLabels && candidate.isResampled)
+        throw core::Error("its slices lie unevenly, and between numbers of tissues there is nothing", candidate.where,
+                          "save the labels with even distances");
     if (settings.spacingMm) {
         for (int i = 0; i < 3; ++i)
             if (!isSpacing((*settings.spacingMm)[i]))
                 throw core::Error(fmt::format("a spacing of {} mm cannot be", (*settings.spacingMm)[i]), "spacing",
                                   "give the distance of voxel centres in mm");
-        if (!step.isZero()) step *= settings.spacingMm->z() / candidate.grid.spacingMm.z();
-        scan.volume.grid.spacingMm = *settings.spacingMm;
-        scan.series.isSpacingKnown = true;
-        scan.series.spacingMm = *settings.spacingMm;
+        if (!step.isZero()) step *= settings.spacingMm->z() / whole.spacingMm.z();
+        whole.spacingMm = *settings.spacingMm;
     } else if (!candidate.spacingProblem.empty()) {
         throw core::Error(fmt::format("the distance of its voxels is not known: {}", candidate.spacingProblem),
                           candidate.where, "give the spacing in mm, for example 0.1")
             .as("no-spacing");
     }
-    scan.volume.values.resize(bytes / sizeof(float));
-    float* const values = scan.volume.values.data();
-    const core::Progress reading = core::part(progress, 0.0, 0.95);
-    const auto& size = candidate.grid.size;
-    if (candidate.load) {
-        candidate.load(values, reading);
-    } else {
-        const std::size_t each = scan.volume.grid.index(0, 0, 1);
-        std::atomic<int> done{0};
-        core::parallelFor(static_cast<std::size_t>(size[2]), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t k = begin; k < end; ++k) {
-                candidate.slice(static_cast<int>(k), values + k * each);
-                core::report(reading, static_cast<double>(++done) / size[2]);
-            }
-        });
+    if (settings.regionMm) {
+        window = windowOf(whole, step, *settings.regionMm, candidate.where);
+        fit();
     }
+    Scan scan;
+    scan.series = describe(candidate, settings.reverseSlices);
+    scan.series.isSpacingKnown = true;
+    if (window.by > 1) scan.series.notes.push_back(shrinkingText(window.count, window.by, settings.limitBytes));
+    Grid& grid = scan.volume.grid;
+    grid = whole;
+    grid.size = shrunk(window.count, window.by);
+    grid.spacingMm *= window.by;
+    const core::Vec3 middle =
+        core::Vec3(window.first[0], window.first[1], window.first[2]) + core::Vec3::Constant(0.5 * (window.by - 1));
+    if (!window.isAll(whole))
+        grid.originMm = whole.toMm({middle.x(), middle.y(), step.isZero() ? middle.z() : 0.0}) + step * middle.z();
+    step *= window.by;
+    Window inFile = window;
+    // Which of the file's slices lie there, where they are numbered from the other end.
+    if (settings.reverseSlices) inFile.first[2] = whole.size[2] - window.first[2] - grid.size[2] * window.by;
+    scan.volume.values.resize(grid.count());
+    readWindow(candidate, inFile, settings.isLabels, scan.volume.values.data(), core::part(progress, 0.0, 0.95));
+    if (settings.reverseSlices) reverseSlices(scan.volume);
     if (const std::size_t bad = removeNonNumbers(scan.volume.values); bad > 0)
         scan.series.notes.push_back(fmt::format("{} values are no numbers and were read as 0", bad));
     makeRightHanded(scan.volume, step);
     straighten(scan, step, settings.limitBytes, core::part(progress, 0.95, 1.0));
-    const Grid& grid = scan.volume.grid;
     scan.series.size = grid.size;
+    scan.series.slices = grid.size[2];
+    scan.series.spacingMm = grid.spacingMm;
     makeThumbnail(scan.volume.values.data() + grid.index(0, 0, grid.size[2] / 2), grid.size[0], grid.size[1],
                   scan.series);
     core::report(progress, 1.0);

@@ -23,6 +23,7 @@ struct Series {
     std::array<int, 3> size{};
     core::Vec3 spacingMm = core::Vec3::Zero();
     bool isSpacingKnown = false;  ///< else spacing must be given
+    bool isSideKnown = true;      ///< else nobody can tell it from its mirror image; a note says why
     int bits = 0;                 ///< a stored value
     /// The middle slice, fitted into 128 x 128, 8 bit, rows from the top.
     std::array<int, 2> thumbnailSize{};
@@ -36,8 +37,15 @@ struct Series {
 struct ReadSettings {
     std::string series;  ///< id; empty: the only one, or the largest when `takeLargest`
     bool takeLargest = false;
-    std::optional<core::Vec3> spacingMm;    ///< wins over the file's
-    std::uint64_t limitBytes = 4ull << 30;  ///< of the volume in memory; larger is refused before it is allocated
+    std::optional<core::Vec3> spacingMm;  ///< wins over the file's
+    /// Slices are numbered from the other end than is taken for granted: a mirror image of what is read without it.
+    bool reverseSlices = false;
+    bool isLabels = false;  ///< values are numbers of tissues: of several the commonest counts, never their mean
+    /// Two corners of a box in the scan's frame: only what lies in it is read.
+    std::optional<std::array<core::Vec3, 2>> regionMm;
+    /// Of the volume in memory; a larger one is read at a half or a quarter of its size along each axis, and told; what
+    /// is too large even so is refused before it is allocated.
+    std::uint64_t limitBytes = 4ull << 30;
 };
 
 struct Scan {

@@ -105,18 +105,21 @@ class Stream {
     std::vector<std::byte> packed_;
 };
 
-void readValues(const Samples& samples, std::uint64_t first, std::uint64_t count, float* to,
-                const core::Progress& progress) {
-    const std::size_t each = bytesOf(samples.type);
-    Stream stream(samples, samples.skip + first * each);
-    const std::size_t most = kChunkBytes / each;
-    std::vector<std::byte> chunk(std::min<std::uint64_t>(count, most) * each);
-    for (std::uint64_t done = 0; done < count;) {
-        const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(count - done, most));
-        stream.read(chunk.data(), part * each);
-        convert(samples.type, samples.isBigEndian, samples.slope, samples.intercept, chunk.data(), part, to + done);
-        done += part;
-        core::report(progress, static_cast<double>(done) / static_cast<double>(count));
+void readSlices(const Samples& samples, int first, int count, const SlicePlace& place, const core::Progress& progress) {
+    const std::size_t each = bytesOf(samples.type), most = kChunkBytes / each;
+    const std::uint64_t perSlice =
+        static_cast<std::uint64_t>(samples.size[0]) * static_cast<std::uint64_t>(samples.size[1]);
+    Stream stream(samples, samples.skip + static_cast<std::uint64_t>(first) * perSlice * each);
+    std::vector<std::byte> chunk(std::min<std::uint64_t>(perSlice, most) * each);
+    for (int k = 0; k < count; ++k) {
+        float* const to = place(first + k);
+        for (std::uint64_t done = 0; done < perSlice;) {
+            const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(perSlice - done, most));
+            stream.read(chunk.data(), part * each);
+            convert(samples.type, samples.isBigEndian, samples.slope, samples.intercept, chunk.data(), part, to + done);
+            done += part;
+        }
+        core::report(progress, static_cast<double>(k + 1) / count);
     }
 }
 
@@ -245,11 +248,9 @@ void setSamples(Candidate& candidate, Samples samples) {
                 where, samples.orderRemedy);
     }
     const auto shared = std::make_shared<const Samples>(std::move(samples));
-    candidate.slice = [shared, perSlice](int k, float* to) {
-        readValues(*shared, static_cast<std::uint64_t>(k) * perSlice, perSlice, to, {});
-    };
-    candidate.load = [shared, perSlice](float* to, const core::Progress& progress) {
-        readValues(*shared, 0, perSlice * static_cast<std::uint64_t>(shared->size[2]), to, progress);
+    candidate.slice = [shared](int k, float* to) { readSlices(*shared, k, 1, [to](int) { return to; }, {}); };
+    candidate.load = [shared](int first, int count, const SlicePlace& place, const core::Progress& progress) {
+        readSlices(*shared, first, count, place, progress);
     };
 }
 

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 
 #include "handpiece/scan/volume/header_text.h"
@@ -59,7 +61,7 @@ void readOne(Input& input, PictureKind kind, const PictureInfo& info, float* to)
         case PictureKind::png:
             return readPng(input, info, to);
         case PictureKind::tiff:
-            return readTiff(input, info, 0, 1, to, {});
+            return readTiff(input, info, 0, 1, [to](int) { return to; }, {});
     }
 }
 
@@ -91,6 +93,177 @@ void split(const std::string& name, Key& key, Slice& slice) {
     key.before = stem.substr(0, begin);
     key.after = stem.substr(end);
     slice.number = wholeOf(std::string_view(stem).substr(begin, end - begin));
+}
+
+/// What a density says of a pixel's size, where a program that knew it must have written it: those that screens and
+/// printers have are written by programs that know nothing.
+std::optional<core::Vec2> pixelOf(const core::Vec2& densityMm) {
+    constexpr double kLeastMm = 1e-3, kMostMm = 0.6, kMmPerInch = 25.4, kSame = 1e-3;
+    constexpr std::array kUsualPerInch{72,  75,  90,  96,  100, 120, 144, 150, 180,  192,  200,  220,
+                                       240, 300, 350, 360, 400, 480, 600, 720, 1200, 1440, 2400, 4800};
+    for (const double mm : {densityMm.x(), densityMm.y()}) {
+        if (!(mm >= kLeastMm && mm <= kMostMm)) return {};
+        for (const int usual : kUsualPerInch)
+            if (std::abs(kMmPerInch / mm - usual) < kSame * usual ||
+                std::abs(10.0 / mm - std::round(10.0 * usual / kMmPerInch)) < kSame)  // rounded to a centimetre
+                return {};
+    }
+    return densityMm;
+}
+
+/// The number behind "key=" at the beginning of a line.
+std::optional<double> valueIn(std::string_view text, std::string_view key) {
+    while (!text.empty()) {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::string_view line = trimmed(text.substr(0, end));
+        text.remove_prefix(std::min(end + 1, text.size()));
+        const std::size_t equals = line.find('=');
+        if (equals == std::string_view::npos || lowered(trimmed(line.substr(0, equals))) != key) continue;
+        if (const auto value = numberOf(line.substr(equals + 1))) return value;
+    }
+    return {};
+}
+
+/// A voxel's size by the log that Skyscan's scanner and NRecon leave beside the slices; nothing where there is none,
+/// or where several disagree. Only its size is looked for.
+std::optional<double> logMm(const FileSet& files, const std::string& firstName) {
+    constexpr std::uint64_t kMaxLog = 1 << 20;
+    constexpr std::size_t kMaxLogs = 64;
+    constexpr double kSame = 1e-3;
+    const std::string_view own = std::string_view(firstName).substr(folderOf(firstName).size());
+    std::optional<double> found;
+    std::size_t longest = 0, seen = 0;
+    bool isSplit = false;
+    for (std::size_t i = 0; i < files.entries().size() && seen < kMaxLogs; ++i) {
+        const std::string& name = files.entries()[i].name;
+        if (extensionOf(name) != ".log" || folderOf(name) != folderOf(firstName) || files.entries()[i].bytes > kMaxLog)
+            continue;
+        ++seen;
+        std::vector<std::byte> bytes;
+        try {
+            bytes = files.bytes(i, kMaxLog);
+        } catch (const core::Error&) {
+            continue;  // what cannot be read tells nothing
+        }
+        const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+        // Of what was reconstructed, which may be coarser than what was taken.
+        std::optional<double> um;
+        if (const std::size_t part = text.find("[Reconstruction]"); part != std::string_view::npos)
+            um = valueIn(text.substr(part), "pixel size (um)");
+        if (!um) um = valueIn(text, "image pixel size (um)");
+        if (!um || !isSpacing(*um * 1e-3)) continue;
+        // The one that has the slices' own name counts before others.
+        std::string_view stem = std::string_view(name).substr(folderOf(name).size());
+        stem.remove_suffix(4);
+        const std::size_t fits = own.starts_with(stem) ? stem.size() : 0;
+        if (found && fits < longest) continue;
+        isSplit = found && fits == longest && (isSplit || std::abs(*um * 1e-3 - *found) > kSame * *found);
+        if (!isSplit) found = *um * 1e-3;
+        longest = fits;
+    }
+    return isSplit ? std::nullopt : found;
+}
+
+/// Where nobody says it: by the scanner's log, else by the pictures' own density.
+void findSpacing(const FileSet& files, const std::string& firstName, const std::vector<PictureInfo>& infos,
+                 Candidate& c) {
+    if (c.spacingProblem.empty()) return;
+    std::vector<std::string>& notes = c.series.notes;
+    if (const std::optional<double> mm = logMm(files, firstName)) {
+        c.spacingProblem.clear();
+        setSpacing(c, core::Vec3::Constant(*mm));
+        notes.push_back(
+            fmt::format("the size of a voxel, {:.6g} mm, is that of the scanner's log beside the slices", *mm));
+        return;
+    }
+    constexpr double kSame = 1e-3;
+    const std::optional<core::Vec2> density = infos.front().densityMm;
+    if (!density) return;
+    for (const PictureInfo& info : infos)
+        if (!info.densityMm || (*info.densityMm - *density).cwiseAbs().maxCoeff() > kSame * density->minCoeff()) return;
+    const std::optional<core::Vec2> pixel = pixelOf(*density);
+    if (!pixel) {
+        c.spacingProblem = fmt::format(
+            "pictures do not tell it: their density, {:.4g} dots an inch, is one of screens and printers or cannot be",
+            25.4 / density->x());
+        return;
+    }
+    if (std::abs(pixel->x() - pixel->y()) > kSame * pixel->minCoeff()) {
+        c.spacingProblem = fmt::format(
+            "the pictures tell the size of a pixel ({:.6g} x {:.6g} mm), not how far the "
+            "slices are apart",
+            pixel->x(), pixel->y());
+        c.grid.spacingMm.head<2>() = *pixel;
+        return;
+    }
+    c.spacingProblem.clear();
+    setSpacing(c, core::Vec3(pixel->x(), pixel->y(), pixel->x()));
+    notes.push_back(
+        fmt::format("the size of a pixel, {:.6g} mm, is that of the pictures' density, and the slices are "
+                    "taken to lie as far apart: give the spacing where that is wrong",
+                    pixel->x()));
+}
+
+/// What a scan.toml beside the pictures says; scale of their values.
+std::pair<double, double> describeBeside(const FileSet& files, const std::string& name, Candidate& c) {
+    const auto toml = files.find(name, "scan.toml");
+    if (!toml) return {1.0, 0.0};
+    try {
+        const Description d = readDescription(files, *toml);
+        if (!d.file.empty()) return {1.0, 0.0};  // of raw numbers that lie here too
+        apply(d, c);
+        if (!d.spacingMm && !c.spacingProblem.empty()) c.spacingProblem = "scan.toml tells no spacing_mm";
+        return {d.slope, d.intercept};
+    } catch (const core::Error& e) {
+        if (!c.problem) c.problem = e;
+    }
+    return {1.0, 0.0};
+}
+
+void scale(float* values, std::size_t count, const std::pair<double, double>& by) {
+    if (by.first == 1.0 && by.second == 0.0) return;
+    for (std::size_t i = 0; i < count; ++i)
+        values[i] = static_cast<float>(by.first * static_cast<double>(values[i]) + by.second);
+}
+
+constexpr const char* kNoSide = "pictures do not tell from which end they are numbered";
+
+/// A stack in one file.
+Candidate pagesOf(const Files& files, std::size_t file, const PictureInfo& info) {
+    Candidate c;
+    const std::string& name = files->entries()[file].name;
+    c.where = files->where(file);
+    c.series.format = "TIFF pages";
+    c.series.bits = info.bits;
+    c.grid.size = {info.columns, info.rows, info.pages};
+    c.spacingProblem = "a TIFF does not tell it";
+    c.sideProblem = "pages do not tell from which end they are numbered";
+    if (info.spacingMm && isSpacing(info.spacingMm->z())) {
+        c.spacingProblem.clear();
+        setSpacing(c, *info.spacingMm);
+    }
+    if (info.isColour) c.series.notes.push_back("colour pictures were turned to grey");
+    const std::pair<double, double> by = describeBeside(*files, name, c);
+    findSpacing(*files, name, {info}, c);
+    const std::size_t each = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
+    c.slice = [files, file, info, by, each](int k, float* to) {
+        Input in = files->open(file);
+        readTiff(in, info, k, 1, [to](int) { return to; }, {});
+        scale(to, each, by);
+    };
+    c.load = [files, file, info, by, each](int first, int count, const SlicePlace& place, const core::Progress& told) {
+        Input in = files->open(file);
+        float* last = nullptr;
+        readTiff(
+            in, info, first, count,
+            [&](int k) {
+                if (last) scale(last, each, by);
+                return last = place(k);
+            },
+            told);
+        if (last) scale(last, each, by);
+    };
+    return c;
 }
 
 /// Why these slices make no scan, or nothing.
@@ -170,26 +343,7 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
                 const PictureInfo info = tiffInfo(input);
                 known[file] = info;
                 if (info.pages > 1) {
-                    Candidate c;
-                    c.where = files->where(file);
-                    c.series.format = "TIFF pages";
-                    c.series.bits = info.bits;
-                    c.grid.size = {info.columns, info.rows, info.pages};
-                    c.spacingProblem = "a TIFF does not tell it";
-                    if (info.spacingMm && isSpacing(info.spacingMm->z())) {
-                        c.spacingProblem.clear();
-                        setSpacing(c, *info.spacingMm);
-                    }
-                    if (info.isColour) c.series.notes.push_back("colour pictures were turned to grey");
-                    c.slice = [files, file, info](int k, float* to) {
-                        Input in = files->open(file);
-                        readTiff(in, info, k, 1, to, {});
-                    };
-                    c.load = [files, file, info](float* to, const core::Progress& told) {
-                        Input in = files->open(file);
-                        readTiff(in, info, 0, info.pages, to, told);
-                    };
-                    found.push_back(std::move(c));
+                    found.push_back(pagesOf(files, file, info));
                     continue;
                 }
             }
@@ -246,29 +400,17 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
         c.grid.size = {info.columns, info.rows, static_cast<int>(slices.size())};
         c.series.bits = info.bits;
         c.spacingProblem = "pictures do not tell it";
+        c.sideProblem = kNoSide;
         if (std::any_of(infos.begin(), infos.end(), [](const PictureInfo& i) { return i.isColour; }))
             c.series.notes.push_back("colour pictures were turned to grey");
-        double slope = 1.0, intercept = 0.0;
-        if (const auto toml = files->find(firstName, "scan.toml")) {
-            try {
-                const Description d = readDescription(*files, *toml);
-                apply(d, c);
-                slope = d.slope;
-                intercept = d.intercept;
-                if (!d.spacingMm) c.spacingProblem = "scan.toml tells no spacing_mm";
-            } catch (const core::Error& e) {
-                if (!c.problem) c.problem = e;
-            }
-        }
+        const std::pair<double, double> by = describeBeside(*files, firstName, c);
+        findSpacing(*files, firstName, infos, c);
         const auto shared = std::make_shared<const std::vector<Slice>>(slices);
-        c.slice = [files, shared, info, slope, intercept](int k, float* to) {
+        c.slice = [files, shared, info, by](int k, float* to) {
             const Slice& slice = (*shared)[static_cast<std::size_t>(k)];
             Input input = files->open(slice.file);
             readOne(input, slice.kind, info, to);
-            if (slope == 1.0 && intercept == 0.0) return;
-            const std::size_t count = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
-            for (std::size_t i = 0; i < count; ++i)
-                to[i] = static_cast<float>(slope * static_cast<double>(to[i]) + intercept);
+            scale(to, static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows), by);
         };
         found.push_back(std::move(c));
     }

@@ -32,7 +32,7 @@ THIRD_PARTY = {
     r"btBullet|BulletCollision|LinearMath/|ode/|embree3/|openvdb/": r"bench/.*",
     r"EGL/|GL/": r"src/handpiece/senses/view/(\w+\.cpp|gl\.h)",
     r"png\.h": r"src/handpiece/senses/view/image\.cpp|src/handpiece/scan/volume/picture_png\.cpp",
-    r"jpeglib\.h": r"src/handpiece/scan/volume/picture_jpeg\.cpp",
+    r"jpeglib\.h": r"src/handpiece/scan/volume/picture_jpeg\.cpp|tests/.*",
     r"tiffio\.h": r"src/handpiece/scan/volume/picture_tiff\.cpp|tests/.*",
     r"gdcm": r"src/handpiece/scan/volume/dicom_\w+\.(cpp|h)|tests/.*",
     r"nifti": r"tests/.*",

@@ -96,8 +96,8 @@ Vec3 directionOf(const std::string& text, const char* option) {
 }
 
 struct ScanOptions {
-    std::string path, out, job, saveJob, series, spacing, region, labelOrder, at, threshold, occlusal, mesial, name,
-        kind, tissues, intraoral, intraoralUnit = "mm", percent, pictures;
+    std::string path, out, job, saveJob, series, spacing, region, labelOrder, numbers, grey, at, threshold, occlusal,
+        mesial, name, kind, tissues, intraoral, intraoralUnit = "mm", percent, pictures;
     std::vector<std::string> lesions, cuts, marks;
     double voxelMm = 0.0;
     std::size_t faces = 0, threads = 0;
@@ -146,6 +146,11 @@ ScanJob jobOf(const ScanOptions& o) {
         job.regionMm = std::array{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
     }
     if (o.labels) job.isLabels = true;
+    if (!o.grey.empty()) job.grey = o.grey;
+    if (!o.numbers.empty()) {
+        job.isLabels = true;
+        job.labelNumbers = segmentation::labelNumbersByName(o.numbers);
+    }
     if (!o.labelOrder.empty()) {
         job.labelOrder.clear();
         for (const double v : numbers(o.labelOrder, "--label-order")) {
@@ -415,6 +420,12 @@ void surface(const ScanOptions& o) {
         if (isNew) fs::remove(o.out, left);
         throw;
     }
+    for (const scan_case::OtherTooth& other : result.others) {
+        const fs::path file = fs::path(o.out) / fmt::format("tooth-{}.stl", other.fdi);
+        geometry::writeStl(file, other.full->outer.mesh);
+        fmt::print("  {:<24} {:>8} faces {:>10.2f} mm3\n", file.filename().string(),
+                   other.full->outer.mesh.triangles.size(), geometry::enclosedVolumeMm3(other.full->outer.mesh));
+    }
     fmt::print("{}: in the scanner's frame, millimetres\n", o.out);
     tellTimes(result);
     tellNotes(result.notes());
@@ -449,6 +460,9 @@ void makeCase(const ScanOptions& o) {
             if (part.tissue != cases::Tissue::enamel)  // its part is the whole tooth; its volume stands below
                 fmt::print("  {:<14} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
                            geometry::enclosedVolumeMm3(part.mesh));
+        for (const cases::PlacedTooth& other : c.others)
+            fmt::print("  tooth {:<8} {:>8} faces {:>10.2f} mm3{}\n", other.fdiNumber, other.outer.triangles.size(),
+                       geometry::enclosedVolumeMm3(other.outer), other.isCuttable ? ", to be cut too" : "");
         for (const cases::Part& part : c.scenery)
             fmt::print("  {:<14} {:>8} faces, scenery\n", part.name, part.mesh.triangles.size());
     }
@@ -478,8 +492,11 @@ void addJobOptions(Command& command, ScanOptions& o) {
     command.option("--spacing", o.spacing, "millimetres between voxels, one number or X,Y,Z; wins over the file's");
     addReadingOptions(command, o);
     command.flag("--labels", o.labels,
-                 "the scan is labels: 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
+                 "the scan is labels: teeth by FDI numbers, or 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration, "
                  "6 bone, 7 gingiva");
+    command.option("--numbers", o.numbers, "what labels' numbers are: tissues, fdi, universal or consecutive")
+        .check(oneOf({"tissues", "fdi", "universal", "consecutive"}));
+    command.option("--grey", o.grey, "the scan that a mouth's labels are of: tells the tissues in each tooth");
     command.option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
     command.option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
     command.option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");
@@ -518,6 +535,7 @@ void addScanCommand(Command& app) {
         "patient, no path and no file's name goes into a case, a report or the cache.\n"
         "Examples:\n  handpiece scan info slices --pictures seen\n"
         "  handpiece scan case slices --spacing 0.05 --tooth 46 --out mine --report\n"
+        "  handpiece scan case teeth.nii.gz --labels --tooth 46 --out mouth\n"
         "  handpiece scan case jaw.zip --at 21.5,-8,40 --percent 6,25 --scenery --out mine.handpiece");
     const auto options = std::make_shared<ScanOptions>();
     ScanOptions& o = *options;
@@ -553,7 +571,8 @@ void addScanCommand(Command& app) {
     cases.option("--out", o.out, "folder or .handpiece file; several percents make OUT-6, OUT-12, ...").required();
     cases.option("--name", o.name, "name of the case, never taken from the scan [default: scanned tooth]");
     cases.option("--kind", o.kind, "kind of tooth, as lower-first-molar");
-    cases.option("--tooth", o.tooth, "FDI number of the tooth, 11 to 48 or 51 to 85")
+    cases
+        .option("--tooth", o.tooth, "FDI number of the tooth, 11 to 48 or 51 to 85; of a mouth's labels: which of them")
         .check(range(11, 85))
         .typeName("FDI");
     cases.option("--occlusal", o.occlusal, "X,Y,Z direction out of the crown in the scan's frame");

@@ -2185,6 +2185,30 @@
         <translation>ファイルの番号が何を表すかを指定してください：1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 修復物。</translation>
     </message>
     <message>
+        <source>The numbers of these labels do not tell which tooth is which.</source>
+        <translation>このラベルの番号からは、どれがどの歯か分かりません。</translation>
+    </message>
+    <message>
+        <source>Save them with FDI numbers, 11 to 48, or with names.</source>
+        <translation>FDI の番号（11〜48）または名前を付けて保存してください。</translation>
+    </message>
+    <message>
+        <source>These labels tell jaws and rows of teeth, but not one tooth from the next.</source>
+        <translation>このラベルは顎と歯列を区別していますが、一本ずつの歯は区別していません。</translation>
+    </message>
+    <message>
+        <source>Use labels of single teeth, by FDI numbers 11 to 48.</source>
+        <translation>FDI の番号（11〜48）で一本ずつの歯を表すラベルを使ってください。</translation>
+    </message>
+    <message>
+        <source>There is no tooth %1 in the labels.</source>
+        <translation>ラベルに歯 %1 はありません。</translation>
+    </message>
+    <message>
+        <source>Choose one of %2.</source>
+        <translation>%2 から選んでください。</translation>
+    </message>
+    <message>
         <source>The tooth is cut off by the border of the scan.</source>
         <translation>歯がスキャンの端で切れています。</translation>
     </message>
@@ -3538,8 +3562,8 @@
         <translation>これはラベルボリュームです</translation>
     </message>
     <message>
-        <source>A label volume from another program: 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling</source>
-        <translation>ほかのプログラムで作ったラベルボリューム：0 なし、1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 充填物</translation>
+        <source>A label volume from another program: teeth by FDI numbers, or 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling</source>
+        <translation>ほかのプログラムで作ったラベルボリューム：FDI の番号の歯、または 0 なし、1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 充填物</translation>
     </message>
     <message>
         <source>&lt;ol&gt;&lt;li&gt;Choose the scan.&lt;/li&gt;&lt;li&gt;See which tissues were found in it; correct by hand where the program is wrong.&lt;/li&gt;&lt;li&gt;Say how fine the surfaces shall be.&lt;/li&gt;&lt;li&gt;Say which way is up, and give the case a name.&lt;/li&gt;&lt;li&gt;Read how good it is, save it, try it.&lt;/li&gt;&lt;/ol&gt;</source>

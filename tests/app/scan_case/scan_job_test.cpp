@@ -27,6 +27,8 @@ ScanJob everything() {
     job.spacingMm = Vec3(0.1, 0.2, 1.0 / 3.0);
     job.isLabels = true;
     job.labelOrder = {0, 3, 2, 1, 4};
+    job.grey = "/somewhere/else";
+    job.labelNumbers = segmentation::LabelNumbers::universal;
     segmentation::Settings& s = job.segmentation;
     s.thresholds =
         segmentation::Thresholds{-1000.5f, 80, 1500, 2800, 250, 2150, std::numeric_limits<float>::infinity()};
@@ -73,6 +75,8 @@ TEST(ScanJobFile, KeepsEveryDecision) {
     EXPECT_EQ(back.intraoralUnit, "inch");
     EXPECT_LT(back.intraoralInScan->orientation.angularDistance(job.intraoralInScan->orientation), 1e-12);
     EXPECT_EQ(back.labelOrder, job.labelOrder);
+    EXPECT_EQ(back.grey, job.grey);
+    EXPECT_EQ(back.labelNumbers, job.labelNumbers);
     EXPECT_EQ(back.percents, job.percents);
     EXPECT_EQ(back.placing.fdiNumber, 46);
     // A job of nothing but defaults says nothing.

@@ -230,6 +230,74 @@ TEST_F(Formats, MetaImage) {
     EXPECT_THAT(error("a.mha", "ObjectType = Image\n"), HasSubstr("ElementDataFile"));
 }
 
+std::vector<std::pair<int, std::string>> namesIn(const Scan& scan) {
+    std::vector<std::pair<int, std::string>> names;
+    for (const LabelName& name : scan.series.labelNames)
+        names.emplace_back(name.value, name.name);
+    return names;
+}
+
+TEST_F(Formats, NamesOfLabelsAreRead) {
+    using Names = std::vector<std::pair<int, std::string>>;
+    const std::string data = numbers(small<std::uint8_t>());
+    const std::string slicer =
+        kLittle +
+        "Segment0_Color:=0.5 0.5 0.5\nSegment0_ID:=Segment_1\nSegment0_LabelValue:=46\nSegment0_Name:=Lower right "
+        "first molar\nSegment1_LabelValue:=2\nSegment1_Name:=Mandible\nSegment2_Name:=of no value\n"
+        "Segment3_LabelValue:=400\nSegment3_Name:=too large\nPatient:=whose is nobody's business\n";
+    EXPECT_EQ(namesIn(read("a.seg.nrrd", nrrd("uchar", slicer, data))),
+              (Names{{2, "Mandible"}, {46, "Lower right first molar"}}));
+    EXPECT_TRUE(namesIn(read("a.nrrd", nrrd("uchar", kLittle, data))).empty());
+    EXPECT_THAT(error("a.seg.nrrd",
+                      "NRRD0005\ntype: uchar\ndimension: 4\nsizes: 2 4 3 2\nkinds: list domain domain "
+                      "domain\nencoding: raw\nSegment0_LabelValue:=1\nSegment0_Name:=a\n\n" +
+                          data + data),
+                HasSubstr("several layers of labels"));
+    EXPECT_THAT(error("a.nrrd",
+                      "NRRD0005\ntype: uchar\ndimension: 4\nsizes: 3 4 3 2\nkinds: RGB-color domain domain "
+                      "domain\nencoding: raw\n\n" +
+                          data + data + data),
+                HasSubstr("colours"));
+    // The table that TotalSegmentator writes behind a NIfTI header.
+    const std::string xml =
+        "<?xml version=\"1.0\"?><CaretExtension><VolumeInformation Index=\"0\"><LabelTable>"
+        "<Label Key=\"11\" Red=\"1\" Alpha=\"1\"><![CDATA[upper_right_central_incisor_fdi11]]></Label>\n"
+        "<Label Key=\"19\">upper_left_central_incisor_fdi21</Label><Label Key=\"0\"><![CDATA[nothing]]></Label>"
+        "</LabelTable></VolumeInformation></CaretExtension>";
+    for (const bool isPacked : {false, true}) {
+        std::string bytes(348, '\0');
+        const auto put = [&](std::size_t place, auto value) { std::memcpy(&bytes[place], &value, sizeof value); };
+        put(0, std::int32_t{348});
+        const std::int16_t dim[4] = {3, 4, 3, 2};
+        std::memcpy(&bytes[40], dim, sizeof dim);
+        put(70, std::int16_t{2});
+        for (std::size_t i = 1; i < 4; ++i)
+            put(76 + 4 * i, 0.3f);
+        put(108, static_cast<float>(348 + 4 + 8 + xml.size()));
+        std::memcpy(&bytes[344], "n+1", 4);
+        bytes += std::string("\1\0\0\0", 4);
+        std::string size(8, '\0');
+        const auto whole = static_cast<std::int32_t>(8 + xml.size());
+        std::memcpy(size.data(), &whole, 4);
+        bytes += size + xml + data;
+        const Scan scan = read(isPacked ? "a.nii.gz" : "a.nii", isPacked ? zipped(bytes, true) : bytes);
+        EXPECT_EQ(scan.volume.values, kSmall);
+        EXPECT_EQ(namesIn(scan),
+                  (Names{{11, "upper_right_central_incisor_fdi11"}, {19, "upper_left_central_incisor_fdi21"}}));
+        std::memcpy(&bytes[70], "\200\0", 2);  // RGB
+        EXPECT_THAT(error("b.nii", bytes), HasSubstr("colours"));
+    }
+}
+
+TEST_F(Formats, LabelsMayBeFloats) {
+    Volume volume;
+    volume.grid.size = {2, 1, 1};
+    volume.values = {46.0f, 10.9999f};
+    EXPECT_EQ(toLabels(volume, "x").values, (std::vector<std::uint8_t>{46, 11}));
+    volume.values[1] = 10.9f;
+    EXPECT_THAT(errorOf([&] { (void)toLabels(volume, "x"); }), HasSubstr("10.9"));
+}
+
 TEST_F(Formats, NiftiOfItsOwnLibraryIsReadTheSame) {
     for (const char* name : {"n.nii", "n.nii.gz", "n.hdr"}) {
         const std::int64_t dims[8] = {3, 4, 3, 2, 1, 1, 1, 1};

@@ -159,10 +159,10 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     inSpacing->addWidget(molar_);
     inDetails->addWidget(spacingBox_);
 
-    labels_ =
-        named(new QCheckBox(tr("These are tissues already, not grey values"), details_), "scanIsLabels",
-              tr("This is a label volume"),
-              tr("A label volume from another program: 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling"));
+    labels_ = named(new QCheckBox(tr("These are tissues already, not grey values"), details_), "scanIsLabels",
+                    tr("This is a label volume"),
+                    tr("A label volume from another program: teeth by FDI numbers, or 0 nothing, 1 caries, 2 enamel, 3 "
+                       "dentine, 4 pulp, 5 filling"));
     inDetails->addWidget(labels_);
     inDetails->addStretch(1);
     scroll->setWidget(details_);
@@ -339,7 +339,7 @@ void ChoosePage::showDetails() {
 void ChoosePage::showJob() {
     showing_ = true;
     reverse_->setChecked(model().job().reverseSlices);
-    labels_->setChecked(model().job().isLabels);
+    labels_->setChecked(model().isLabels());
     const auto& source = model().job().source;
     dropText_->setText(source.empty()
                            ? tr("Drop a folder of slices, a ZIP or a file here")

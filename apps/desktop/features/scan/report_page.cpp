@@ -243,7 +243,7 @@ QString ReportPage::reportHtml() const {
     line(tr("Voxels of the scan"),
          tr("%1 × %2 × %3 mm").arg(number(g.spacingMm.x(), 3), number(g.spacingMm.y(), 3), number(g.spacingMm.z(), 3)),
          job.spacingMm ? tr("given by hand") : QString());
-    if (!job.isLabels) {
+    if (!model().isLabels()) {
         line(tr("Blur of the scan"), mm(r.region->blurMm, 3), tr("standard deviation"));
         const auto& t = r.region->thresholds;
         if (r.region->noise > 0)

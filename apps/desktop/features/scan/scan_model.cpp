@@ -29,6 +29,8 @@ ScanJob readPart(const ScanJob& job) {
     part.regionMm = job.regionMm;
     part.isLabels = job.isLabels;
     part.labelOrder = job.labelOrder;
+    part.labelNumbers = job.labelNumbers;
+    part.grey = job.grey;
     return part;
 }
 
@@ -290,6 +292,7 @@ void ScanModel::next() {
             first.job = readPart(job);
             first.scan = isPreview ? scan_->coarse : scan_->scan;
             first.labels = isPreview ? scan_->coarseLabels : scan_->labels;
+            first.labelKey = scan_->labelKey;
             begin(
                 work, key,
                 [this, made, before, asked, first, isPreview, shown = scan_](const core::Progress& progress) {

@@ -74,6 +74,8 @@ class ScanModel : public QObject {
     [[nodiscard]] const std::optional<core::Vec3>& molarSpacingMm() const noexcept { return molarSpacingMm_; }
     void estimateSpacing();
     [[nodiscard]] std::shared_ptr<const ShownScan> scan() const noexcept { return scan_; }
+    /// As the person says, or as the scan plainly is.
+    [[nodiscard]] bool isLabels() const { return job().isLabels || (scan_ && scan_->labels); }
     [[nodiscard]] std::shared_ptr<const ShownResult> preview() const noexcept { return preview_; }
     [[nodiscard]] std::shared_ptr<const ShownResult> full() const noexcept { return full_; }
     /// Whether it is of the decisions as they are now.

@@ -170,21 +170,23 @@ volume::Volume coarsened(const volume::Volume& volume, bool isLabels) {
 
 ShownScan shownScan(volume::Scan scan, const scan_case::ScanJob& job, const core::Progress& progress) {
     ShownScan shown;
-    const auto labelsOf = [&](const volume::Volume& of) {
-        volume::Labels labels = volume::toLabels(of, job.source.filename().string());
-        if (!job.labelOrder.empty())
-            for (std::uint8_t& v : labels.values)
-                if (v < job.labelOrder.size()) v = job.labelOrder[v];
-        return std::make_shared<const volume::Labels>(std::move(labels));
-    };
-    if (job.isLabels) shown.labels = labelsOf(scan.volume);
+    if (const auto labels = scan_case::readLabels(scan, job)) {
+        shown.labels = labels->labels;
+        shown.labelKey = labels->key;
+    }
     shown.histogram = histogramOf(scan.volume);
     core::report(progress, 0.5);
-    volume::Scan coarse{coarsened(scan.volume, job.isLabels), scan.series};
+    const bool isLabels = shown.labels != nullptr;
+    volume::Scan coarse{coarsened(scan.volume, isLabels), scan.series};
     core::report(progress, 1.0);
-    if (job.isLabels) shown.coarseLabels = labelsOf(coarse.volume);
+    const bool same = coarse.volume.grid.size == scan.volume.grid.size;
+    if (isLabels) {
+        shown.coarseLabels = shown.labels;
+        scan_case::ScanJob asLabels = job;
+        asLabels.isLabels = true;
+        if (!same) shown.coarseLabels = scan_case::readLabels(coarse, asLabels)->labels;
+    }
     shown.scan = std::make_shared<const volume::Scan>(std::move(scan));
-    const bool same = coarse.volume.grid.size == shown.scan->volume.grid.size;
     shown.coarse = same ? shown.scan : std::make_shared<const volume::Scan>(std::move(coarse));
     return shown;
 }

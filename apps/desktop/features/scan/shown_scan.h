@@ -25,6 +25,7 @@ struct ShownScan {
     std::shared_ptr<const volume::Scan>
         coarse;  ///< for previews: at least kPreviewMm; the scan itself where it is that
     std::shared_ptr<const volume::Labels> labels, coarseLabels;  ///< of a scan that is labels
+    std::shared_ptr<const segmentation::LabelKey> labelKey;
     GreyHistogram histogram;
 };
 inline constexpr double kPreviewMm = 0.1;

@@ -186,7 +186,7 @@ void SurfacePage::showJob() {
     if (job.faces > 0) faces_->setValue(static_cast<int>(job.faces));
     smooth_->setChecked(job.smooth);
     scenery_->setChecked(job.scenery);
-    scenery_->setEnabled(!job.isLabels);
+    scenery_->setEnabled(!model().isLabels());
     spacing_->setValue(job.segmentation.spacingMm);
     reach_->setValue(job.intraoralReachMm);
     const bool has = !job.intraoral.empty();

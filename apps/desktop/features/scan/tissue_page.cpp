@@ -362,7 +362,7 @@ void TissuePage::showJob() {
         view->setDecisions(settings);
     damp_->setChecked(settings.damp);
     caries_->setChecked(settings.findCaries);
-    const bool labels = model().job().isLabels;
+    const bool labels = model().isLabels();
     for (QWidget* widget :
          {static_cast<QWidget*>(damp_), static_cast<QWidget*>(caries_), static_cast<QWidget*>(histogram_)})
         widget->setVisible(!labels);

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "handpiece/app/scan_case/scan_mouth.h"
 #include "handpiece/app/scan_case/scan_scenery.h"
 #include "handpiece/app/scan_case/scan_toml.h"
 #include "handpiece/base/core/error.h"
@@ -43,26 +44,40 @@ core::Progress listenerOf(const ScanProgress& progress, ScanStage stage) {
 void read(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     if (job.source.empty()) throw core::Error("no scan is named", "scan", "give a file, a folder, a ZIP or a DICOMDIR");
-    volume::Scan scan =
-        volume::readScan(job.source, readSettings(job), core::part(progress, 0.0, job.isLabels ? 0.9 : 1.0));
-    if (job.isLabels) {
-        volume::Labels labels = volume::toLabels(scan.volume, job.source.filename().string());
-        if (!job.labelOrder.empty())
-            for (std::uint8_t& v : labels.values)
-                if (v < job.labelOrder.size()) v = job.labelOrder[v];
-        result.labels = std::make_shared<const volume::Labels>(std::move(labels));
+    const double share = job.grey.empty() ? 0.9 : 0.5;
+    volume::Scan scan = volume::readScan(job.source, readSettings(job), core::part(progress, 0.0, share));
+    result.grey.reset();
+    result.labels.reset();
+    result.labelKey.reset();
+    if (const auto labels = readLabels(scan, job)) {
+        result.labels = labels->labels;
+        result.labelKey = labels->key;
         // The labels are all that is needed: a scan of numbers is four times their size.
         scan.volume.values.clear();
         scan.volume.values.shrink_to_fit();
     }
     result.scan = std::make_shared<const volume::Scan>(std::move(scan));
+    if (!job.grey.empty()) {
+        if (!result.isMouth())
+            throw core::Error("the scan that labels are of is asked of a mouth's labels alone",
+                              job.grey.filename().string(), "give labels of teeth by their numbers, or leave it out");
+        volume::ReadSettings own;
+        own.takeLargest = true;
+        result.grey =
+            std::make_shared<const volume::Scan>(volume::readScan(job.grey, own, core::part(progress, share, 1.0)));
+    }
     core::report(progress, 1.0);
 }
 
 void segment(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     segmentation::Region region;
-    if (result.labels) {
+    result.fdiNumber = job.placing.fdiNumber;
+    result.teeth.clear();
+    result.toothNotes.clear();
+    if (result.isMouth()) {
+        region = segmentMouth(result, progress);
+    } else if (result.labels) {
         region = segmentation::segmentLabels(*result.labels, job.segmentation, progress);
     } else {
         segmentation::Settings settings = job.segmentation;
@@ -98,6 +113,7 @@ void surface(ScanResult& result, const core::Progress& progress) {
             registration::withOuterSurface(surfaces, geometry::transformed(scan, result.registered->movingInFixed),
                                            job.intraoralReachMm, core::part(progress, 0.7, 1.0));
     }
+    if (result.isMouth()) surfaceOthers(result, surfaces, core::part(progress, share, 1.0));
     result.full = std::make_shared<const surfacing::Surfaces>(std::move(surfaces));
     core::report(progress, 1.0);
 }
@@ -120,6 +136,7 @@ void turnByShape(ScanResult& result) {
 
 void place(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
+    if (result.isMouth()) return placeMouth(result, progress);
     result.placed = registration::place(*result.full, job.placing);
     if (!job.placing.mesial) turnByShape(result);
     core::report(progress, 0.2);
@@ -168,7 +185,8 @@ void decimate(ScanResult& result, const core::Progress& progress) {
     registration::CaseText text;
     text.name = job.name;
     text.kind = job.kind;
-    text.fdiNumber = job.placing.fdiNumber;
+    text.fdiNumber = result.fdiNumber;
+    if (result.isMouth() && text.kind.empty()) text.kind = wordsOf(result.fdiNumber).kind;
     text.tissuesToml = tissuesOf(job.tissuesFile);
     result.cases.clear();
     result.caseNotes.clear();
@@ -179,6 +197,7 @@ void decimate(ScanResult& result, const core::Progress& progress) {
         registration::CaseText own = text;
         if (job.faces == 0 && job.percents.size() > 1) own.name += fmt::format(" ({} %)", shown(percent));
         made.toothCase = registration::makeCase(*made.surfaces, result.placed, own, result.scenery);
+        if (result.isMouth()) addOthers(result, percent, made.toothCase);
         result.cases.push_back(std::move(made));
     };
     if (job.faces > 0) {
@@ -265,19 +284,43 @@ std::vector<std::string> ScanResult::notes() const {
             if (std::find(all.begin(), all.end(), note) == all.end()) all.push_back(note);
     };
     if (scan) take(scan->series.notes);
+    if (labelKey) take(labelKey->notes);
     if (region) take(region->notes);
+    take(toothNotes);
     if (full) take(full->notes);
     if (registered)
         all.push_back(
             fmt::format("the intraoral scan lies {:.3f} mm (rms) off the CT's surface, 95 % of it within "
                         "{:.3f} mm, over {:.0f} % of it",
                         registered->rmsMm, registered->worstMm, 100.0 * registered->overlap));
+    take(mouthNotes);
     take(placed.notes);
     take(ownNotes);
     for (const ScannedCase& c : cases)
         take(c.surfaces->notes);
     take(caseNotes);
     return all;
+}
+
+std::optional<ReadLabels> readLabels(const volume::Scan& scan, const ScanJob& job) {
+    if (!job.isLabels && !segmentation::looksLikeMouth(scan.volume, scan.series.labelNames)) return std::nullopt;
+    const std::string where = job.source.filename().string();
+    volume::Labels labels = volume::toLabels(scan.volume, where);
+    segmentation::LabelKey key;
+    if (!job.labelOrder.empty()) {
+        for (std::uint8_t& v : labels.values)
+            if (v < job.labelOrder.size()) v = job.labelOrder[v];
+        key = segmentation::labelKeyOf(labels, {}, segmentation::LabelNumbers::tissues, where);
+    } else {
+        key = segmentation::labelKeyOf(labels, scan.series.labelNames, job.labelNumbers, where);
+        using What = segmentation::LabelMeaning::What;
+        if (!key.isMouth)
+            for (std::uint8_t& v : labels.values)
+                v = key.of[v].what == What::tissue ? static_cast<std::uint8_t>(key.of[v].number) : std::uint8_t{0};
+    }
+    if (!job.isLabels) key.notes.insert(key.notes.begin(), "its numbers are labels of teeth, not grey values");
+    return ReadLabels{std::make_shared<const volume::Labels>(std::move(labels)),
+                      std::make_shared<const segmentation::LabelKey>(std::move(key))};
 }
 
 ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const ScanResult* before, ScanStage last) {
@@ -301,19 +344,26 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
         void (*work)(ScanResult&, const core::Progress&);
         void (*drop)(ScanResult&);
     };
+    // In a mouth the number is a choice among its teeth; it is read before anybody asks.
+    const auto sameRegion = [&] {
+        return segmentToml(job) == segmentToml(old) &&
+               (!result.isMouth() || job.placing.fdiNumber == old.placing.fdiNumber);
+    };
     const auto sameSurface = [&] { return job.smooth == old.smooth && surfaceToml(job) == surfaceToml(old); };
     const auto samePlace = [&] {
         return job.scenery == old.scenery && job.placing.fdiNumber == old.placing.fdiNumber &&
                placeToml(job) == placeToml(old);
     };
     const std::array<Step, kScanStages.size()> steps{
-        {{ScanStage::read, readToml(job) == readToml(old), result.scan != nullptr && (!job.isLabels || result.labels),
+        {{ScanStage::read, readToml(job) == readToml(old), result.scan != nullptr && (!job.isLabels || result.labelKey),
           &read,
           [](ScanResult& r) {
               r.scan.reset();
               r.labels.reset();
+              r.labelKey.reset();
+              r.grey.reset();
           }},
-         {ScanStage::segment, segmentToml(job) == segmentToml(old), result.region != nullptr, &segment,
+         {ScanStage::segment, sameRegion(), result.region != nullptr, &segment,
           [](ScanResult& r) {
               r.region.reset();
               r.volumesMm3 = {};
@@ -322,6 +372,8 @@ ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const Sc
           [](ScanResult& r) {
               r.full.reset();
               r.registered.reset();
+              r.others.clear();
+              r.mouthNotes.clear();
           }},
          {ScanStage::place, samePlace(), result.isPlaced, &place,
           [](ScanResult& r) {

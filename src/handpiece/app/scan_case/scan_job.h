@@ -16,6 +16,7 @@
 #include "handpiece/model/case/case.h"
 #include "handpiece/scan/registration/make_case.h"
 #include "handpiece/scan/registration/registration.h"
+#include "handpiece/scan/segmentation/label_key.h"
 #include "handpiece/scan/segmentation/segment.h"
 #include "handpiece/scan/surfacing/surfaces.h"
 #include "handpiece/scan/volume/read_scan.h"
@@ -31,9 +32,12 @@ struct ScanJob {
     std::optional<core::Vec3> spacingMm;                ///< wins over the file's
     bool reverseSlices = false;                         ///< as volume::ReadSettings
     std::optional<std::array<core::Vec3, 2>> regionMm;  ///< as volume::ReadSettings
-    bool isLabels = false;                              ///< its values are volume::Labels' numbers
+    bool isLabels = false;                 ///< its values are labels; told from the file where they are teeth's
     std::vector<std::uint8_t> labelOrder;  ///< what the file's numbers 0, 1, 2, ... mean, as volume::Labels' numbers;
-                                           ///< empty: they are those
+                                           ///< empty: they are those, or teeth
+    std::optional<segmentation::LabelNumbers> labelNumbers;  ///< wins over what the file's names and numbers tell
+    std::filesystem::path
+        grey;  ///< the scan that labels of a mouth are of: tells the tissues in each tooth; empty: none
     // Which tooth, of what.
     segmentation::Settings segmentation;
     std::optional<double> toothFrom, enamelFrom;  ///< grey values that win over those found, where
@@ -45,7 +49,7 @@ struct ScanJob {
     std::optional<core::Pose> intraoralInScan;              ///< roughly, by hand; none: found by features
     double intraoralReachMm = 0.5, intraoralOverlap = 0.5;  ///< as registration::withOuterSurface, RegisterSettings
     // The tooth's own frame and the case's words.
-    registration::Hints placing;  ///< with the FDI number
+    registration::Hints placing;  ///< with the FDI number; in labels of a mouth it chooses the tooth
     std::string name = "scanned tooth";
     std::string kind;
     std::filesystem::path tissuesFile;  ///< table of tissues of one's own; empty: as shipped
@@ -92,18 +96,33 @@ struct ScannedCase {
     cases::Case toothCase;  ///< `source` is empty
 };
 
+/// Another tooth of a mouth.
+struct OtherTooth {
+    int fdi = 0;
+    std::shared_ptr<const surfacing::Surfaces> full;  ///< scanner's frame
+    registration::Placed placed;
+};
+
 /// All that came out, stage by stage; a stage that was not reached is null or empty. Cheap to copy.
 struct ScanResult {
     ScanJob job;
     // read
     std::shared_ptr<const volume::Scan> scan;
-    std::shared_ptr<const volume::Labels> labels;  ///< where the job says that the scan is labels
+    std::shared_ptr<const volume::Labels> labels;  ///< where the scan is labels
+    std::shared_ptr<const segmentation::LabelKey> labelKey;
+    std::shared_ptr<const volume::Scan> grey;  ///< as the job has it
     // segment
     std::shared_ptr<const segmentation::Region> region;
     std::array<double, cases::kTissueCount> volumesMm3{};  ///< sub-voxel, of the region
+    int fdiNumber = 0;                                     ///< of a mouth's tooth that is worked on; else as asked
+    std::vector<segmentation::LabelledTooth> teeth;        ///< of a mouth: all of them
+    segmentation::Thresholds greyLevels{};                 ///< of the scan that its labels are of
+    std::vector<std::string> toothNotes;
     // surface
     std::shared_ptr<const surfacing::Surfaces> full;
     std::optional<registration::Registered> registered;  ///< of the intraoral scan
+    std::vector<OtherTooth> others;                      ///< of a mouth, by FDI number
+    std::vector<std::string> mouthNotes;
     // place
     registration::Placed placed;
     bool isPlaced = false;
@@ -116,7 +135,16 @@ struct ScanResult {
     ScanTimings timings;
     /// What a person should know, of all stages: plain sentences without names or paths.
     [[nodiscard]] std::vector<std::string> notes() const;
+    [[nodiscard]] bool isMouth() const { return labelKey && labelKey->isMouth; }
 };
+
+struct ReadLabels {
+    std::shared_ptr<const volume::Labels> labels;  ///< of one tooth: by volume::Labels' numbers
+    std::shared_ptr<const segmentation::LabelKey> key;
+};
+/// A scan's values as the labels that the job says they are, or that they plainly are; none where they are grey values.
+/// Throws core::Error for labels that are none, and where it is not told what they mean.
+[[nodiscard]] std::optional<ReadLabels> readLabels(const volume::Scan& scan, const ScanJob& job);
 
 /// Does the job up to and with stage `last`. Results of `before` are taken over where no decision that they depend on
 /// has changed, so a wizard passes its last result and waits for what it changed only. A scan read elsewhere is handed

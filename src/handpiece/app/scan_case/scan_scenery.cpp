@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
@@ -22,6 +23,8 @@ constexpr double kCoarsestMm = 0.3;    ///< between samples, unless the scan is 
 constexpr double kGapMm = 0.15;        ///< kept around the tooth itself
 constexpr double kMinVolumeMm3 = 4.0;  ///< smaller pieces are noise
 constexpr std::size_t kMaxFaces = 40000, kFewestFaces = 200, kMaxPieces = 12;
+constexpr double kJawStepMm = 0.5;
+constexpr float kLeastTooth = 0.2f;          ///< share of a tooth in what is still beside it
 constexpr std::uint8_t kNeighbourLabel = 8;  ///< another tooth as a whole, where labels tell it
 
 /// Trilinear, `outside` beyond the border.
@@ -126,6 +129,16 @@ std::vector<geometry::TriangleMesh> around(const volume::Grid& scan, const geome
     return piecesOf(geometry::isosurface(grid, core::part(progress, 0.8, 1.0)));
 }
 
+/// What is felt must be one; what is not is still seen.
+bool isSolid(const geometry::TriangleMesh& mesh) {
+    try {
+        cases::requireSolid(mesh, "scenery");
+        return true;
+    } catch (const core::Error&) {
+        return false;
+    }
+}
+
 void add(std::vector<cases::Part>& parts, const char* name, cases::Tissue tissue,
          std::vector<geometry::TriangleMesh> pieces) {
     for (std::size_t i = 0; i < pieces.size(); ++i)
@@ -180,6 +193,125 @@ std::vector<cases::Part> sceneryOf(const volume::Labels& labels, const geometry:
                 [&](const Vec3& p) { return 2.0 * voxelMm * (0.5 - sample(labels.grid, isIt, p, 0.0)); },
                 core::part(progress, done, done + 1.0 / 3.0)));
         done += 1.0 / 3.0;
+    }
+    return parts;
+}
+
+namespace {
+
+/// Evens samples out over about one of them.
+void evenOut(std::vector<float>& values, const std::array<std::uint32_t, 3>& nodes) {
+    const std::array<std::size_t, 3> stride{1, nodes[0], std::size_t{nodes[0]} * nodes[1]};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+        core::parallelFor(nodes[u], 4, [&](std::size_t from, std::size_t to) {
+            for (std::size_t a = from; a < to; ++a)
+                for (std::size_t b = 0; b < nodes[v]; ++b) {
+                    float before = 0.0f;
+                    for (std::size_t i = 0; i < nodes[axis]; ++i) {
+                        float& here = values[a * stride[u] + b * stride[v] + i * stride[axis]];
+                        const float was = here;
+                        const float after = i + 1 < nodes[axis] ? (&here)[stride[axis]] : was;
+                        if (i == 0) before = was;
+                        here = 0.25f * before + 0.5f * was + 0.25f * after;
+                        before = was;
+                    }
+                }
+        });
+    }
+}
+
+/// What of a mouth's labels is of these meanings, within a box of the scanner's axes.
+std::vector<geometry::TriangleMesh> thingOf(const volume::Labels& labels, const segmentation::LabelKey& key,
+                                            const std::array<bool, 16>& isIt, bool isApart, const core::Box& box,
+                                            const core::Progress& progress) {
+    using What = segmentation::LabelMeaning::What;
+    geometry::ScalarGrid grid;
+    grid.spacingMm = std::max(kJawStepMm, labels.grid.spacingMm.maxCoeff());
+    grid.originMm = box.min;
+    for (std::size_t a = 0; a < 3; ++a)
+        grid.nodes[a] = static_cast<std::uint32_t>(box.size()[static_cast<Eigen::Index>(a)] / grid.spacingMm) + 2;
+    const std::size_t slice = std::size_t{grid.nodes[0]} * grid.nodes[1];
+    std::vector<float> thing(slice * grid.nodes[2]), teeth(isApart ? thing.size() : 0);
+    const auto share = [&](const Vec3& p, const auto& is) {
+        return static_cast<float>(sample(
+            labels.grid, [&](std::size_t i) { return is(key.of[labels.values[i]].what) ? 1.0 : 0.0; }, p, 0.0));
+    };
+    core::parallelFor(grid.nodes[2], 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) {
+            for (std::size_t ij = 0; ij < slice; ++ij) {
+                const Vec3 p = grid.originMm + grid.spacingMm * Vec3(static_cast<double>(ij % grid.nodes[0]),
+                                                                     static_cast<double>(ij / grid.nodes[0]),
+                                                                     static_cast<double>(k));
+                thing[k * slice + ij] = share(p, [&](What what) { return isIt[static_cast<std::size_t>(what)]; });
+                if (isApart)
+                    teeth[k * slice + ij] =
+                        share(p, [&](What what) { return what == What::tooth || what == What::pulp; });
+            }
+            core::report(progress, 0.8 * static_cast<double>(k) / grid.nodes[2]);
+        }
+    });
+    evenOut(thing, grid.nodes);
+    if (isApart) evenOut(teeth, grid.nodes);
+    const auto scale = static_cast<float>(2.0 * grid.spacingMm);
+    for (std::size_t n = 0; n < thing.size(); ++n) {
+        thing[n] = scale * (0.5f - thing[n]);
+        if (isApart) thing[n] = std::max(thing[n], scale * (teeth[n] - kLeastTooth));
+    }
+    grid.values = thing;
+    return piecesOf(geometry::isosurface(grid, core::part(progress, 0.8, 1.0)));
+}
+
+}  // namespace
+
+std::vector<cases::Part> jawsOf(const volume::Labels& labels, const segmentation::LabelKey& key,
+                                const std::array<core::Box, 2>& teethOfJaws, double reachMm,
+                                const core::Progress& progress) {
+    using What = segmentation::LabelMeaning::What;
+    struct Kind {
+        const char* name;
+        cases::Tissue tissue;
+        What what;
+        bool isApart, isFelt;
+        int priority;
+    };
+    // The gingiva's solid goes on through the bone, as in a generated mouth.
+    constexpr int kBonePriority = 6;
+    const int gum = cases::properties(cases::Tissue::gum).priority,
+              made = cases::properties(cases::Tissue::restoration).priority;
+    const std::array<Kind, 4> kinds{{{"upper-bone", cases::Tissue::bone, What::upperBone, true, true, kBonePriority},
+                                     {"lower-bone", cases::Tissue::bone, What::lowerBone, true, true, kBonePriority},
+                                     {"gingiva", cases::Tissue::gum, What::gum, true, true, gum},
+                                     {"prosthesis", cases::Tissue::restoration, What::prosthesis, false, false, made}}};
+    core::Box both;
+    for (const core::Box& box : teethOfJaws)
+        if (!box.isEmpty()) {
+            both.extend(box.min);
+            both.extend(box.max);
+        }
+    std::array<bool, 256> isThere{};
+    for (const std::uint8_t v : labels.values)
+        isThere[v] = true;
+    std::vector<cases::Part> parts;
+    for (std::size_t i = 0; i < kinds.size(); ++i) {
+        const Kind& kind = kinds[i];
+        bool any = false;
+        for (std::size_t v = 0; v < isThere.size(); ++v)
+            any = any || (isThere[v] && key.of[v].what == kind.what);
+        core::Box box = kind.what == What::upperBone   ? teethOfJaws[0]
+                        : kind.what == What::lowerBone ? teethOfJaws[1]
+                                                       : both;
+        if (!any || box.isEmpty()) continue;
+        std::array<bool, 16> isIt{};
+        isIt[static_cast<std::size_t>(kind.what)] = true;
+        std::vector<geometry::TriangleMesh> pieces =
+            thingOf(labels, key, isIt, kind.isApart, box.grown(reachMm),
+                    core::part(progress, static_cast<double>(i) / 4.0, static_cast<double>(i + 1) / 4.0));
+        for (std::size_t p = 0; p < pieces.size(); ++p) {
+            cases::Part part{fmt::format("{} {}", kind.name, p + 1), kind.tissue, kind.priority, std::move(pieces[p])};
+            part.isFelt = kind.isFelt && isSolid(part.mesh);
+            parts.push_back(std::move(part));
+        }
     }
     return parts;
 }

@@ -209,7 +209,11 @@ std::string readToml(const ScanJob& job) {
         lines.put("region_mm", fmt::format("[{}, {}, {}, {}, {}, {}]", number(a.x()), number(a.y()), number(a.z()),
                                            number(b.x()), number(b.y()), number(b.z())));
     }
+    lines.text("grey", job.grey.string());
     lines.flag("labels", job.isLabels, false);
+    if (job.labelNumbers)
+        lines.text("label_numbers",
+                   std::string(segmentation::kLabelNumbers[static_cast<std::size_t>(*job.labelNumbers)]));
     if (!job.labelOrder.empty()) lines.put("label_order", fmt::format("[{}]", fmt::join(job.labelOrder, ", ")));
     return lines.bare();
 }
@@ -275,10 +279,10 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
     if (const std::int64_t format = table.integer("format").value_or(0); format != kFormat)
         table.fail(fmt::format("the job's format is {}, this program reads format {}", format, kFormat),
                    fmt::format("add the line: format = {}", kFormat), "format");
-    table.allowOnly({"format",       "source",      "series",   "spacing_mm", "reverse_slices", "region_mm",
-                     "labels",       "label_order", "smooth",   "name",       "kind",           "fdi",
-                     "tissues",      "scenery",     "percents", "faces",      "tooth_from",     "enamel_from",
-                     "segmentation", "intraoral",   "placing"});
+    table.allowOnly({"format",     "source",      "series",        "spacing_mm",  "reverse_slices", "region_mm",
+                     "grey",       "labels",      "label_numbers", "label_order", "smooth",         "name",
+                     "kind",       "fdi",         "tissues",       "scenery",     "percents",       "faces",
+                     "tooth_from", "enamel_from", "segmentation",  "intraoral",   "placing"});
     ScanJob job;
     job.source = table.text("source").value_or("");
     job.series = table.text("series").value_or("");
@@ -294,7 +298,9 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
             (void)checked(table, "region_mm", x, -kMaxMm, kMaxMm);
         job.regionMm = std::array{Vec3(v[0], v[1], v[2]), Vec3(v[3], v[4], v[5])};
     }
+    job.grey = table.text("grey").value_or("");
     job.isLabels = table.flag("labels").value_or(false);
+    if (const auto numbers = table.text("label_numbers")) job.labelNumbers = segmentation::labelNumbersByName(*numbers);
     for (const double v : table.numbers("label_order")) {
         if (!(v >= 0.0 && v <= 255.0) || v != std::floor(v))
             table.fail("label_order holds what is no whole number from 0 to 255", "give 0 to 7", "label_order");

@@ -3,6 +3,7 @@
 /// @file
 /// Landmarks found on a tooth's surfaces by their shape, where it shows them.
 
+#include <optional>
 #include <vector>
 
 #include "handpiece/base/core/progress.h"
@@ -22,6 +23,14 @@ namespace handpiece::landmarks {
 /// stands in its own frame, by its shape; 0 where it may as well stand as it should. Landmarks of a turned crown are
 /// found, and named, as it is turned.
 [[nodiscard]] double turnOfCrown(const cases::Tooth& tooth);
+/// How a tooth lies, by the average one of its number.
+struct Lie {
+    core::Pose surfaceInTooth;  ///< from the surface's frame to the tooth's own
+    double misfitMm = 0.0;      ///< of the crown, between the two: mean
+};
+/// Lays the average tooth of a permanent one's FDI number into a closed surface, stretched along its axes, from where
+/// `roughly` (the same way) says that it lies; none where the two do not come together. Deterministic.
+[[nodiscard]] std::optional<Lie> lieOf(int fdiNumber, const geometry::TriangleMesh& surface, const core::Pose& roughly);
 /// Of the tooth that is worked on, beside its adjacent teeth.
 [[nodiscard]] std::vector<cases::Landmark> findLandmarks(const cases::Case& toothCase,
                                                          const core::Progress& progress = {});

@@ -2,7 +2,6 @@
 // The tooth's own frame: occlusal where the enamel lies, long axis by inertia, mesial by the crown's longer side.
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -11,6 +10,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/scan/registration/moments.h"
 #include "handpiece/scan/registration/registration.h"
 
 namespace handpiece::registration {
@@ -29,69 +29,6 @@ constexpr double kCellMm = 0.25;
 constexpr double kMinShare = 0.02;
 /// A hint that is this near to the other axis (cosine) says nothing.
 constexpr double kParallel = 0.98;
-
-struct Moments {
-    double weight = 0.0;
-    Vec3 mean = Vec3::Zero();
-    Mat3 covariance = Mat3::Zero();
-    void add(const Vec3& p, double w) {
-        weight += w;
-        mean += w * p;
-        covariance += w * p * p.transpose();
-    }
-    void finish() {
-        if (!(weight > 0.0)) return;
-        mean /= weight;
-        covariance = covariance / weight - mean * mean.transpose();
-    }
-};
-
-/// Of the volume: tetrahedra from a point within, weighted with their sign.
-Moments volumeMoments(const TriangleMesh& mesh) {
-    const Vec3 from = mesh.bounds().centre();
-    Moments m;
-    for (const geometry::Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[t[0]] - from, b = mesh.vertices[t[1]] - from, c = mesh.vertices[t[2]] - from;
-        const double volume = a.dot(b.cross(c)) / 6.0;
-        const Vec3 sum = a + b + c;
-        m.weight += volume;
-        m.mean += volume * sum / 4.0;
-        m.covariance +=
-            volume / 20.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
-    }
-    m.finish();
-    m.mean += from;
-    return m;
-}
-
-/// Third moment of the volume along an axis: negative where the long thin end points along it backwards.
-double volumeSkew(const TriangleMesh& mesh, const Vec3& mean, const Vec3& axis) {
-    double sum = 0.0;
-    for (const geometry::Triangle& t : mesh.triangles) {
-        const Vec3 a = mesh.vertices[t[0]] - mean, b = mesh.vertices[t[1]] - mean, c = mesh.vertices[t[2]] - mean;
-        const double volume = a.dot(b.cross(c)) / 6.0;
-        const double x = a.dot(axis), y = b.dot(axis), z = c.dot(axis);
-        // Exact for a tetrahedron with one corner at the mean: sum of all products of degree three, each once.
-        sum += volume / 20.0 *
-               (x * x * x + y * y * y + z * z * z + x * x * y + x * x * z + y * y * x + y * y * z + z * z * x +
-                z * z * y + x * y * z);
-    }
-    return sum;
-}
-
-struct Axes {
-    Mat3 vectors;  ///< columns, by falling spread
-    Vec3 spread;
-};
-Axes principalAxes(const Mat3& covariance) {
-    const Eigen::SelfAdjointEigenSolver<Mat3> solver(covariance);
-    Axes axes;
-    for (int i = 0; i < 3; ++i) {
-        axes.vectors.col(i) = solver.eigenvectors().col(2 - i);
-        axes.spread[i] = std::max(0.0, solver.eigenvalues()[2 - i]);
-    }
-    return axes;
-}
 
 /// The same surface with one vertex, of its own, in each cell. Not manifold; no triangle twice.
 TriangleMesh thinned(const TriangleMesh& mesh) {

@@ -15,6 +15,18 @@ using core::Vec3;
 namespace {
 constexpr std::uint8_t kCaries = 1, kEnamel = 2, kDentine = 3, kPulp = 4, kRestoration = 5;
 constexpr double kSmoothVoxels = 0.9;
+constexpr double kLargestMm3 = 6000.0;  ///< four of the largest molars
+
+constexpr double kMostMm3 = 40000.0;  ///< more than all teeth of a mouth
+
+core::Error noSingleTeeth(double volumeMm3) {
+    return core::Error(
+               fmt::format("what the labels call tissues of a tooth is {:.0f} mm3: no tooth is as large", volumeMm3),
+               "labels",
+               "these may be labels of jaws and rows of teeth (1 upper skull, 2 mandible, 3 upper and 4 lower teeth), "
+               "which tell no single tooth: use labels of single teeth by FDI numbers")
+        .as("labels-no-single-teeth");
+}
 
 /// Labels on the block's grid, the commonest of what a voxel holds.
 Mask labelsOn(const Work& work, const volume::Labels& labels, const core::Progress& progress) {
@@ -52,8 +64,8 @@ Mask labelsOn(const Work& work, const volume::Labels& labels, const core::Progre
     return result;
 }
 
-/// A distance to the smoothed boundary of what is set, nowhere further than half a voxel from the boundary between the
-/// voxels: a voxel's centre never changes sides.
+}  // namespace
+
 Field smoothed(const Shape& shape, Field&& share) {
     constexpr int kSlices = 48;  // at once, so that blurring takes no more room than it needs
     const int reach = 2 * blurReach(kSmoothVoxels);
@@ -84,6 +96,7 @@ Field smoothed(const Shape& shape, Field&& share) {
     return inside;
 }
 
+namespace {
 /// A box of voxels of a block.
 struct Piece {
     std::array<int, 3> low{};
@@ -131,6 +144,7 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
     // Where the tooth's labels are.
     std::array<int, 3> low{1 << 30, 1 << 30, 1 << 30}, high{-1, -1, -1};
     bool hasUnknown = false;
+    std::size_t tooth = 0;
     for (int k = 0; k < scan.size[2]; ++k) {
         core::report(progress, 0.05 * k / scan.size[2]);
         for (int j = 0; j < scan.size[1]; ++j)
@@ -139,6 +153,7 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
                 if (label == 0) continue;
                 if (label > 7) hasUnknown = true;
                 if (label > kRestoration) continue;
+                ++tooth;
                 const std::array<int, 3> at{i, j, k};
                 for (std::size_t axis = 0; axis < 3; ++axis) {
                     low[axis] = std::min(low[axis], at[axis]);
@@ -151,6 +166,7 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
             "empty segmentation: no label of a tooth (1 caries, 2 enamel, 3 dentine, 4 pulp, 5 restoration)", "labels",
             "map the file's numbers to these")
             .as("labels-empty");
+    if (const double mm3 = static_cast<double>(tooth) * scan.voxelMm3(); mm3 > kMostMm3) throw noSingleTeeth(mm3);
     Work work;
     if (hasUnknown) work.notes.emplace_back("labels above 7 mean nothing here and were left out");
     const double h = settings.spacingMm > 0 ? settings.spacingMm : std::max(0.03, scan.spacingMm.minCoeff());
@@ -191,6 +207,8 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
             throw core::Error("there is no tooth at the place that was pointed at", "labels",
                               "point at a labelled voxel")
                 .as("no-tooth-there");
+        const double volumeMm3 = static_cast<double>(parts.counts[chosen]) * h * h * h;
+        if (volumeMm3 > kLargestMm3) throw noSingleTeeth(volumeMm3);
         for (std::size_t n = 0; n < solid.size(); ++n)
             if (parts.of[n] != chosen) label[n] = solid[n] = 0;
     }
@@ -241,9 +259,10 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
     const auto has = [&](std::uint8_t which) { return std::find(label.begin(), label.end(), which) != label.end(); };
     work.outer = smoothed(shape, Field(solid.begin(), solid.end()));
     core::report(progress, 0.5);
-    if (has(kEnamel))
+    // Where labels tell enamel alone there is no dentine to be told.
+    if (has(kEnamel) && has(kDentine))
         work.dentine = tissue({kDentine, kPulp}, {kCaries, kRestoration});
-    else
+    else if (!has(kEnamel))
         work.dentine.assign(shape.count(), kBand);
     if (has(kPulp)) work.pulp = tissue({kPulp}, {});
     if (has(kCaries)) work.caries = tissue({kCaries}, {});

@@ -64,8 +64,9 @@ struct Solid {
 struct Region {
     volume::Grid grid;  ///< isotropic; axes as the scan's
     Solid outer;        ///< the whole tooth, its pulp filled and its apices closed
-    /// In this order, only what is there: dentine (with everything below the enamel: pulp, caries in it), pulp, caries,
-    /// restoration. What `outer` holds beyond them is enamel. Later ones win where they overlap.
+    /// In this order, only what is there: dentine (with everything below the enamel: pulp, caries in it; none where
+    /// labels tell no dentine from the enamel), pulp, caries, restoration. What `outer` holds beyond them is enamel.
+    /// Later ones win where they overlap.
     std::vector<Solid> solids;
     Thresholds thresholds;           ///< that were used
     double blurMm = 0;               ///< of the scan, as found: standard deviation

@@ -52,6 +52,7 @@ void applyMark(Work& work, const Mark& mark) {
         if (field.empty()) field.assign(work.shape.count(), -kBand);
     };
     if (tissue == Tissue::pulp) make(work.pulp);
+    if (tissue == Tissue::dentine || tissue == Tissue::cementum) make(work.dentine);
     if (tissue == Tissue::caries) {
         make(work.caries);
     }
@@ -146,12 +147,12 @@ Region toRegion(Work&& work, const Settings& settings, const core::Progress& pro
         }
     if (!work.pulp.empty()) {
         if (!work.caries.empty()) keepOutside(work.caries, work.pulp);
-        core::parallelFor(work.pulp.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
+        core::parallelFor(work.dentine.size(), 1 << 18, [&](std::size_t from, std::size_t to) {
             for (std::size_t n = from; n < to; ++n)
                 work.dentine[n] = std::max(work.dentine[n], work.pulp[n]);
         });
     }
-    keepInside(work.dentine, work.outer);
+    if (!work.dentine.empty()) keepInside(work.dentine, work.outer);
     core::report(progress, 0.7);
     Field lesions = lesionsOf(work, settings);
     if (!lesions.empty()) {
@@ -167,7 +168,7 @@ Region toRegion(Work&& work, const Settings& settings, const core::Progress& pro
     region.noise = work.noise;
     region.notes = std::move(work.notes);
     region.outer = solidOf(work, std::move(work.outer), Tissue::none, false);
-    region.solids.push_back(solidOf(work, std::move(work.dentine), Tissue::dentine, false));
+    if (!work.dentine.empty()) region.solids.push_back(solidOf(work, std::move(work.dentine), Tissue::dentine, false));
     if (!work.pulp.empty()) region.solids.push_back(solidOf(work, std::move(work.pulp), Tissue::pulp, false));
     if (!work.caries.empty()) region.solids.push_back(solidOf(work, std::move(work.caries), Tissue::caries, false));
     if (!lesions.empty()) region.solids.push_back(solidOf(work, std::move(lesions), Tissue::caries, true));

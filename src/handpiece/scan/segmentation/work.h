@@ -57,6 +57,10 @@ void refine(Work& work, const core::Progress& progress);
 /// Marks, cut planes and authored lesions; nesting; units.
 [[nodiscard]] Region toRegion(Work&& work, const Settings& settings, const core::Progress& progress);
 
+/// A distance to the smoothed boundary of what is set (1, else 0), nowhere further than half a voxel from the boundary
+/// between the voxels: a voxel's centre never changes sides.
+[[nodiscard]] Field smoothed(const Shape& shape, Field&& share);
+
 /// Gives `values` of unknown voxels (1) what the nearest known ones (0) have; others (2) stay out of it.
 void spreadInto(const Shape& shape, Field& values, const Mask& unknown);
 

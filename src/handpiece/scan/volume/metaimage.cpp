@@ -77,8 +77,9 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
         throw wrong(fmt::format("it has {} dimensions, not three", shown(field({"NDims"}))),
                     "save one volume of grey values");
     if (const std::string channels = field({"ElementNumberOfChannels"}); !channels.empty() && channels != "1")
-        throw wrong(fmt::format("it has {} values a voxel, not one", shown(channels)),
-                    "save one volume of grey values");
+        throw wrong(fmt::format("it has {} values a voxel, not one{}", shown(channels),
+                                channels == "3" || channels == "4" ? ": its voxels are colours" : ""),
+                    "save one volume of grey values or labels");
     std::array<std::int64_t, 3> size{};
     for (std::size_t i = 0; i < 3; ++i)
         size[i] = sizes[i] >= 1.0 && sizes[i] < 1e15 ? static_cast<std::int64_t>(sizes[i]) : 0;

@@ -15,6 +15,8 @@ namespace handpiece::volume {
 namespace {
 
 constexpr std::size_t kHeader1 = 348, kHeader2 = 540;
+constexpr std::size_t kMaxExtensions = 1 << 18;
+constexpr int kRgb = 128, kRgba = 2304;
 
 /// The numbers of a header, at their places of version 1 and 2.
 struct Reader {
@@ -76,6 +78,30 @@ std::optional<SampleType> typeOf(int code) {
     }
 }
 
+/// <Label Key="46" ...><![CDATA[name]]></Label> of the table that Connectome Workbench defined and TotalSegmentator
+/// writes into an extension of the header.
+std::vector<LabelName> labelTableOf(std::string_view text) {
+    std::vector<LabelName> names;
+    std::size_t at = text.find("<LabelTable");
+    if (at == std::string_view::npos) return names;
+    while ((at = text.find("<Label ", at)) != std::string_view::npos) {
+        const std::size_t open = text.find('>', at), end = text.find("</Label>", at);
+        const std::size_t key = text.find("Key=\"", at);
+        if (open == std::string_view::npos || end == std::string_view::npos) break;
+        at = end;
+        if (key == std::string_view::npos || key > open) continue;
+        const std::size_t number = key + 5;
+        const auto value = wholeOf(text.substr(number, text.find('"', number) - number));
+        std::string_view name = trimmed(text.substr(open + 1, end - open - 1));
+        constexpr std::string_view kData = "<![CDATA[";
+        if (name.starts_with(kData) && name.ends_with("]]>"))
+            name = name.substr(kData.size(), name.size() - kData.size() - 3);
+        if (value && *value > 0 && *value <= 255 && !name.empty())
+            names.push_back({static_cast<int>(*value), std::string(trimmed(name))});
+    }
+    return names;
+}
+
 }  // namespace
 
 Candidate openNifti(const Files& files, std::size_t index) {
@@ -129,6 +155,8 @@ Candidate openNifti(const Files& files, std::size_t index) {
     samples.size = {static_cast<int>(dim(1)), static_cast<int>(dim(2)), static_cast<int>(dim(3))};
     const int typeCode = is2 ? header.at<std::int16_t>(12) : header.at<std::int16_t>(70);
     const auto type = typeOf(typeCode);
+    if (typeCode == kRgb || typeCode == kRgba)
+        throw wrong("its voxels are colours, no grey values or labels", "save one number a voxel");
     if (!type)
         throw wrong(fmt::format("values of the NIfTI type {} are not read", typeCode),
                     "save it as whole numbers or floats");
@@ -142,7 +170,14 @@ Candidate openNifti(const Files& files, std::size_t index) {
         is2 ? static_cast<double>(header.at<std::int64_t>(168)) : static_cast<double>(header.at<float>(108));
     std::uint64_t begin = offset >= 0.0 && offset < 1e15 ? static_cast<std::uint64_t>(offset) : 0;
     if (isOneFile) {
-        begin = std::max<std::uint64_t>(begin, is2 ? kHeader2 : kHeader1);
+        const std::size_t own = is2 ? kHeader2 : kHeader1;
+        begin = std::max<std::uint64_t>(begin, own);
+        if (begin > own + 12) {
+            std::string head(std::min<std::uint64_t>(begin, own + kMaxExtensions), '\0');
+            head.resize(samples.isPacked ? unpackHead(input, head.data(), head.size())
+                                         : input.readAt(0, head.data(), head.size()));
+            if (head.size() > own) out.series.labelNames = labelTableOf(std::string_view(head).substr(own));
+        }
     } else {
         const std::string& name = files->entries()[index].name;
         std::string image = name.substr(folderOf(name).size());

@@ -2,6 +2,7 @@
 // NRRD 1 to 5, header attached or detached; raw or gzip. https://teem.sourceforge.net/nrrd/format.html
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -99,6 +100,21 @@ std::optional<core::Vec3> toLps(const std::string& space) {
     return {};
 }
 
+/// What 3D Slicer calls its segments: Segment3_LabelValue:=46, Segment3_Name:=...
+std::vector<LabelName> segmentNames(const std::map<std::string, std::string>& remarks) {
+    constexpr std::string_view kValue = "_LabelValue";
+    std::vector<LabelName> names;
+    for (const auto& [key, text] : remarks) {
+        if (!key.ends_with(kValue)) continue;
+        const auto value = wholeOf(text);
+        const auto name = remarks.find(key.substr(0, key.size() - kValue.size()) + "_Name");
+        if (value && *value > 0 && *value <= 255 && name != remarks.end())
+            names.push_back({static_cast<int>(*value), name->second});
+    }
+    std::stable_sort(names.begin(), names.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+    return names;
+}
+
 double mmOf(const std::string& unit) {
     if (unit == "um" || unit == "µm" || unit == "micron" || unit == "microns" || unit == "micrometer") return 1e-3;
     if (unit == "cm") return 10.0;
@@ -120,7 +136,7 @@ Candidate openNrrd(const Files& files, std::size_t index) {
     };
     if (text.rfind("NRRD000", 0) != 0) throw wrong("this is no NRRD file", "name another file");
 
-    std::map<std::string, std::string> fields;
+    std::map<std::string, std::string> fields, remarks;
     std::size_t at = text.find('\n');
     bool ended = false;
     while (at != std::string::npos && at + 1 < text.size()) {
@@ -134,8 +150,13 @@ Candidate openNrrd(const Files& files, std::size_t index) {
         }
         if (line[0] == '#') continue;
         const std::size_t colon = line.find(':');
-        // "key:=value" is a remark of somebody's, which is not looked at.
-        if (colon == std::string_view::npos || (colon + 1 < line.size() && line[colon + 1] == '=')) continue;
+        if (colon == std::string_view::npos) continue;
+        // "key:=value" is a remark of somebody's; of those only the names of 3D Slicer's segments are looked at.
+        if (colon + 1 < line.size() && line[colon + 1] == '=') {
+            if (line.starts_with("Segment"))
+                remarks[std::string(trimmed(line.substr(0, colon)))] = std::string(trimmed(line.substr(colon + 2)));
+            continue;
+        }
         fields[lowered(trimmed(line.substr(0, colon)))] = std::string(trimmed(line.substr(colon + 1)));
     }
     const auto field = [&](std::initializer_list<const char*> names) -> std::string {
@@ -145,6 +166,8 @@ Candidate openNrrd(const Files& files, std::size_t index) {
     };
     const std::string dataFile = field({"data file", "datafile"});
     if (!ended && dataFile.empty()) throw wrong("its header does not end", "copy or save the file again");
+
+    out.series.labelNames = segmentNames(remarks);
 
     Samples samples;
     samples.files = files;
@@ -156,6 +179,13 @@ Candidate openNrrd(const Files& files, std::size_t index) {
     samples.type = type->second;
     const auto dimension = wholeOf(field({"dimension"}));
     const std::vector<std::string_view> sizes = wordsOf(fields["sizes"]);
+    if (dimension && *dimension == 4 && !out.series.labelNames.empty())
+        throw wrong("its segments overlap, so that it holds several layers of labels",
+                    "export it from 3D Slicer as one label map, or make the segments not overlap");
+    if (const std::string kinds = lowered(field({"kinds"}));
+        dimension && *dimension == 4 &&
+        (kinds.find("rgb") != std::string::npos || kinds.find("color") != std::string::npos))
+        throw wrong("its voxels are colours, no grey values or labels", "save one number a voxel");
     if (!dimension || *dimension != 3 || sizes.size() != 3)
         throw wrong(fmt::format("it has {} dimensions, not three", shown(field({"dimension"}))),
                     "save one volume of grey values");

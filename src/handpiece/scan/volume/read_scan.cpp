@@ -708,11 +708,13 @@ Labels toLabels(const Volume& volume, const std::string& where) {
     labels.grid = volume.grid;
     labels.values.resize(volume.values.size());
     for (std::size_t i = 0; i < volume.values.size(); ++i) {
-        const float v = volume.values[i];
-        if (!(v >= 0.0f && v <= 255.0f && v == std::floor(v)))
+        // Programs that keep labels as floats write 11 through a slope now and then.
+        constexpr float kWhole = 1e-3f;
+        const float v = volume.values[i], whole = std::round(v);
+        if (!(whole >= 0.0f && whole <= 255.0f && std::abs(v - whole) <= kWhole))
             throw core::Error(fmt::format("it holds {}, which is no label (whole numbers 0 to 255)", v), where,
                               "read it as a scan, or save the labels as 8-bit whole numbers");
-        labels.values[i] = static_cast<std::uint8_t>(v);
+        labels.values[i] = static_cast<std::uint8_t>(whole);
     }
     return labels;
 }

@@ -13,6 +13,12 @@
 
 namespace handpiece::volume {
 
+/// What a label volume's own header calls a number.
+struct LabelName {
+    int value = 0;
+    std::string name;
+};
+
 /// One thing that can be read out of a file, a folder, a ZIP or a DICOMDIR. Nothing in it names a patient: no name, no
 /// UID, no date, no private tag, no path.
 struct Series {
@@ -29,6 +35,8 @@ struct Series {
     std::array<int, 2> thumbnailSize{};
     std::vector<std::uint8_t> thumbnail;
     std::vector<std::string> notes;  ///< what a person should know: gaps, tilt, burned-in text, left-out files
+    /// Of 3D Slicer's segments and of the label table in a NIfTI file's extension; empty where a file tells none.
+    std::vector<LabelName> labelNames{};
 };
 
 /// What there is, the largest first. Throws core::Error when nothing fits, saying what was found instead.
@@ -58,7 +66,7 @@ struct Scan {
 [[nodiscard]] Scan readScan(const std::filesystem::path& path, const ReadSettings& settings = {},
                             const core::Progress& progress = {});
 
-/// A volume whose values are whole numbers 0..255, as labels. Throws core::Error otherwise.
+/// A volume whose values are whole numbers 0..255 (as floats: within 0.001), as labels. Throws core::Error otherwise.
 [[nodiscard]] Labels toLabels(const Volume& volume, const std::string& where);
 
 }  // namespace handpiece::volume

@@ -11,10 +11,13 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <set>
+#include <utility>
 
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/geometry/read_notes.h"
 #include "studies/progress_bar.h"
 
 namespace handpiece::cli {
@@ -34,6 +37,15 @@ void finishPrinting() {
         throw core::Error(
             std::string("not all could be printed") + (errno != 0 ? ": " + std::string(std::strerror(errno)) : ""),
             "standard output", "give it a place with room");
+}
+
+/// What was left out of a file goes to stderr, once: a command may read a file twice.
+void tellWhatIsLeftOut(const std::string& program) {
+    geometry::listenToNotes([program, told = std::set<std::pair<std::string, std::string>>()](
+                                const std::string& where, const std::string& note) mutable {
+        if (told.emplace(where, note).second)
+            std::fprintf(stderr, "%s: note: %s: %s\n", program.c_str(), where.c_str(), note.c_str());
+    });
 }
 
 /// Says what an option takes as one would say it.
@@ -75,6 +87,7 @@ int runApp(int argc, const char* const* argv, const App& of) {
     addCompletionCommand(top, of.name);
     addManualCommand(top, of.name);
     studies::installCancel();
+    tellWhatIsLeftOut(of.name);
     try {
         if (of.begin) of.begin();
         app.parse(argc, argv);

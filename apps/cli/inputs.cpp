@@ -12,6 +12,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/read_notes.h"
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/tick/contact/hull/hull_method.h"
 #include "studies/progress_bar.h"
@@ -29,7 +30,11 @@ double MeshUnit::mmPerUnit() const {
 }
 
 geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNotes* notes) const {
-    return geometry::scaled(geometry::readMesh(fs::path(file), notes), mmPerUnit());
+    geometry::ReadNotes found;
+    geometry::TriangleMesh mesh = geometry::readMesh(fs::path(file), &found);
+    geometry::tellNotes(file, found);
+    if (notes) *notes = std::move(found);
+    return geometry::scaled(std::move(mesh), mmPerUnit());
 }
 
 void addLengthUnit(Command& command, const char* name, std::string& unit, const char* help) {

@@ -20,7 +20,7 @@ struct MeshUnit {
     double scale = 1.0;  ///< besides
 
     [[nodiscard]] double mmPerUnit() const;
-    /// A mesh file in millimetres. Throws core::Error.
+    /// A mesh file in millimetres; what was left out of it is told, and goes to `notes` besides. Throws core::Error.
     [[nodiscard]] geometry::TriangleMesh read(const std::string& file, geometry::ReadNotes* notes = nullptr) const;
 };
 /// An option that takes a unit of length.

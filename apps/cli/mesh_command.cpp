@@ -61,10 +61,82 @@ void printReport(const MeshReport& r) {
     row("probable unit", fmt::format("{} ({})", geometry::unitName(r.unit.unit), r.unit.reason));
 }
 
-std::string verdict(const MeshReport& r, std::size_t crossings) {
-    if (!r.closed()) return "not closed: handpiece mesh repair can mend it";
-    if (!r.oriented()) return "closed, but not consistently oriented: handpiece mesh repair can mend it";
-    if (crossings > 0) return "closed and oriented, but it crosses itself: handpiece mesh repair mends small spots";
+struct RepairOptions {
+    std::string in, out;
+    MeshUnit unit;
+    double weldMm = -1.0, baseDepthMm = -1.0;
+    bool keepDebris = false, base = false, json = false;
+
+    [[nodiscard]] geometry::RepairSettings settings() const {
+        geometry::RepairSettings s;
+        s.weldMm = weldMm;
+        if (keepDebris) s.debrisAreaShare = 0.0;
+        s.base = base || baseDepthMm >= 0.0;
+        s.baseDepthMm = baseDepthMm;
+        return s;
+    }
+};
+
+/// What comes out of it as a file is a solid, or it is refused: a case takes it.
+geometry::RepairReport mend(geometry::TriangleMesh& mesh, const geometry::RepairSettings& settings,
+                            const std::string& in, geometry::MeshFormat format) {
+    geometry::RepairReport report;
+    try {
+        report = geometry::repair(mesh, settings);
+    } catch (const core::Error& e) {
+        throw core::Error(e.problem(), e.where() == "mesh" ? in : e.where(), e.remedy());
+    }
+    geometry::requireUncrossed(report, settings, in);
+    if (format != geometry::MeshFormat::stl) return report;
+    geometry::ReadNotes ignored;
+    const geometry::TriangleMesh rounded =
+        geometry::readMesh(geometry::stlBytes(mesh, in), geometry::MeshFormat::stl, in, &ignored);
+    const MeshReport after = geometry::inspect(rounded);
+    if (!after.closed() || !after.oriented() || !geometry::selfIntersections(rounded, 1).empty())
+        throw core::Error(
+            "the mended surface is a solid no more once it is rounded to the short numbers of an STL file", in,
+            "write it as .ply");
+    return report;
+}
+
+/// Whether and how it can be mended: tried, not guessed.
+struct Prospect {
+    bool isNeeded = false, isPossible = false, isByBase = false;
+    std::string reason;  ///< why not
+};
+
+Prospect prospectOf(const geometry::TriangleMesh& mesh, const MeshReport& r, std::size_t crossings,
+                    const std::string& file) {
+    Prospect prospect;
+    prospect.isNeeded = !r.closed() || !r.oriented() || crossings > 0;
+    if (!prospect.isNeeded) return prospect;
+    for (const bool base : {false, true}) {
+        geometry::RepairSettings settings;
+        settings.base = base;
+        geometry::TriangleMesh work = mesh;
+        try {
+            (void)mend(work, settings, file, geometry::MeshFormat::stl);
+            prospect.isPossible = true;
+            prospect.isByBase = base;
+            return prospect;
+        } catch (const core::Error& e) {
+            if (!base) prospect.reason = e.problem();
+        }
+        if (r.openEdges == 0) break;
+    }
+    return prospect;
+}
+
+std::string flawOf(const MeshReport& r) {
+    if (!r.closed()) return "not closed";
+    return r.oriented() ? "closed and oriented, but it crosses itself" : "closed, but not consistently oriented";
+}
+
+std::string verdict(const MeshReport& r, const Prospect& prospect) {
+    if (prospect.isPossible)
+        return fmt::format("{}: handpiece mesh repair{} mends it", flawOf(r), prospect.isByBase ? " --base" : "");
+    if (prospect.isNeeded)
+        return fmt::format("{}, and handpiece mesh repair refuses it: {}", flawOf(r), prospect.reason);
     if (r.unit.unit != geometry::LengthUnit::millimetre)
         return fmt::format("closed, oriented, not crossing itself, but probably not in millimetres: {}",
                            r.unit.unit == geometry::LengthUnit::unknown
@@ -79,30 +151,27 @@ void info(const std::string& file, const MeshUnit& unit, bool json) {
     const geometry::TriangleMesh mesh = unit.read(file, &notes);
     const MeshReport report = geometry::inspect(mesh);
     const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
+    const Prospect prospect = prospectOf(mesh, report, crossings.size(), file);
     if (json) {
         Json out{{"file", file}};
         out.update(studies::toJson(report));
         out["crossing_faces"] = crossings.size();
+        out["repair"] = nullptr;
+        if (prospect.isNeeded)
+            out["repair"] = {{"possible", prospect.isPossible},
+                             {"base", prospect.isByBase},
+                             {"reason", prospect.isPossible ? Json(nullptr) : Json(prospect.reason)}};
         out["notes"] = notes;
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
         return;
     }
     fmt::print("{}\n", file);
-    for (const std::string& note : notes)
-        fmt::print("  note: {}\n", note);
     printReport(report);
     row("crossing faces",
         crossings.empty() ? "0"
                           : fmt::format("{}{}", counted(crossings.size(), "pair", "pairs"), at(crossings[0].pointMm)));
-    row("verdict", verdict(report, crossings.size()));
+    row("verdict", verdict(report, prospect));
 }
-
-struct RepairOptions {
-    std::string in, out;
-    MeshUnit unit;
-    double weldMm = -1.0;
-    bool keepDebris = false, json = false;
-};
 
 void repair(const RepairOptions& options) {
     // Before the work, not after it: an output that cannot be would waste the wait.
@@ -111,15 +180,7 @@ void repair(const RepairOptions& options) {
         throw core::Error("meshes are written as .stl or .ply", options.out, "name the output so");
     geometry::ReadNotes notes;
     geometry::TriangleMesh mesh = options.unit.read(options.in, &notes);
-    geometry::RepairSettings settings;
-    settings.weldMm = options.weldMm;
-    if (options.keepDebris) settings.debrisAreaShare = 0.0;
-    geometry::RepairReport r;
-    try {
-        r = geometry::repair(mesh, settings);
-    } catch (const core::Error& e) {
-        throw core::Error(e.problem(), e.where() == "mesh" ? options.in : e.where(), e.remedy());
-    }
+    const geometry::RepairReport r = mend(mesh, options.settings(), options.in, format);
     geometry::writeMesh(options.out, mesh);
     if (options.json) {
         Json out{{"file", options.in}, {"output", options.out}};
@@ -129,8 +190,6 @@ void repair(const RepairOptions& options) {
         return;
     }
     fmt::print("{} -> {}\n", options.in, options.out);
-    for (const std::string& note : notes)
-        fmt::print("  note: {}\n", note);
     row("welded", fmt::format("{} (within {:.3g} mm)", counted(r.weldedVertices, "vertex", "vertices"), r.weldMm));
     row("removed",
         fmt::format("{} degenerate, {} double and {} fin faces ({:.3g} mm2 of fins)", r.removedDegenerateFaces,
@@ -149,6 +208,11 @@ void repair(const RepairOptions& options) {
                             r.holes[i].perimeterMm, r.holes[i].areaMm2, r.holes[i].centreMm.x(),
                             r.holes[i].centreMm.y(), r.holes[i].centreMm.z()));
     if (r.holes.size() > kShown) row("", fmt::format("and {} smaller ones", r.holes.size() - kShown));
+    for (const geometry::MadeBase& b : r.bases)
+        row("base",
+            fmt::format("under a border of {} edges, {:.4g} mm around; {:.3g} mm below its lowest place; {:.4g} "
+                        "mm2 of walls and floor",
+                        b.edges, b.perimeterMm, b.depthMm, b.areaMm2));
     if (r.turnedFlatFaces > 0) row("turned", counted(r.turnedFlatFaces, "face without height", "faces without height"));
     if (r.removedCrossingFaces > 0)
         row("replaced", fmt::format("{}, {:.3g} mm2",
@@ -159,7 +223,7 @@ void repair(const RepairOptions& options) {
     fmt::print("the result:\n");
     printReport(r.after);
     row("crossing faces", std::to_string(r.crossingFaces));
-    row("verdict", verdict(r.after, r.crossingFaces));
+    row("verdict", verdict(r.after, {}));
 }
 
 }  // namespace
@@ -197,10 +261,20 @@ void addMeshCommand(Command& app) {
         .check(nonNegative());
     repairCommand.flag("--keep-debris", options->keepDebris,
                        "Keep shells of less than 1 % of the largest shell's area");
+    repairCommand.flag("--base", options->base,
+                       "Stand the border of an open scan on a flat base; other holes are closed as usual");
+    repairCommand
+        .option(
+            "--base-depth", options->baseDepthMm,
+            "From the border's lowest place to the floor, with --base [default: a twentieth of the box's diagonal, 1 "
+            "to 5 mm]")
+        .typeName("MM")
+        .check(range(0.01, 1000.0));
     repairCommand.flag("--json", options->json, "Print JSON instead of a table");
     repairCommand.footer(
         "Examples:\n"
         "  handpiece mesh repair scan.stl molar.stl\n"
+        "  handpiece mesh repair arch.stl model.stl --base\n"
         "  handpiece mesh repair inches.obj molar.stl --unit inch\n"
         "  handpiece mesh repair scan.ply molar.stl --weld 0.01 --keep-debris");
     repairCommand.callback([options] { repair(*options); });

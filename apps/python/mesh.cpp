@@ -52,8 +52,15 @@ double millimetresOf(const std::string& unit) {
 Mesh readMesh(const py::object& path, const std::string& unit) {
     const std::string file = pathFrom(path);
     const double mm = millimetresOf(unit);
-    const py::gil_scoped_release released;
-    return meshOf(geometry::scaled(geometry::readMesh(file), mm));
+    geometry::ReadNotes notes;
+    Mesh mesh;
+    {
+        const py::gil_scoped_release released;
+        mesh = meshOf(geometry::scaled(geometry::readMesh(file, &notes), mm));
+    }
+    for (const std::string& note : notes)
+        if (PyErr_WarnEx(PyExc_UserWarning, (file + ": " + note).c_str(), 1) != 0) throw py::error_already_set();
+    return mesh;
 }
 
 py::object inspectMesh(const Mesh& mesh) {
@@ -67,8 +74,11 @@ py::object inspectMesh(const Mesh& mesh) {
     return fromJson(text);
 }
 
-py::tuple repairMesh(const Mesh& mesh, std::optional<double> weldMm, bool keepDebris) {
+py::tuple repairMesh(const Mesh& mesh, std::optional<double> weldMm, bool keepDebris, bool base,
+                     std::optional<double> baseDepthMm) {
     if (weldMm && !(*weldMm >= 0.0)) throw core::Error("a welding distance below zero", "weld_mm", "give 0 or more");
+    if (baseDepthMm && !(*baseDepthMm > 0.0))
+        throw core::Error("a base has a depth", "base_depth_mm", "give more than 0, or leave it out");
     Mesh mended;
     std::string text;
     {
@@ -77,6 +87,8 @@ py::tuple repairMesh(const Mesh& mesh, std::optional<double> weldMm, bool keepDe
         geometry::RepairSettings settings;
         if (weldMm) settings.weldMm = *weldMm;
         if (keepDebris) settings.debrisAreaShare = 0.0;
+        settings.base = base || baseDepthMm;
+        if (baseDepthMm) settings.baseDepthMm = *baseDepthMm;
         text = studies::toJson(geometry::repair(work, settings)).dump();
         mended = meshOf(std::move(work));
     }
@@ -121,10 +133,15 @@ void bindMesh(py::module_& module) {
              "Counts, sizes and flaws.\n\nReturns\n-------\ndict\n"
              "    As `handpiece mesh info --json` tells: closed, oriented, open_edges, volume_mm3, crossing_faces, ...")
         .def("repair", &repairMesh, py::arg("weld_mm") = py::none(), py::arg("keep_debris") = false,
+             py::arg("base") = false, py::arg("base_depth_mm") = py::none(),
              "Mend: weld, close holes, orient, drop debris. This mesh stays as it is.\n\n"
              "Parameters\n----------\n"
              "weld_mm : float, optional\n    Vertices nearer than this become one [mm]; 1e-5 of the diagonal if None.\n"
-             "keep_debris : bool\n    Keep shells of less than 1 % of the largest one's area.\n\n"
+             "keep_debris : bool\n    Keep shells of less than 1 % of the largest one's area.\n"
+             "base : bool\n    Stand the border of an open scan on a flat base.\n"
+             "base_depth_mm : float, optional\n    From the border's lowest place to the floor, with a base [mm]; by "
+             "the "
+             "scan's size if None.\n\n"
              "Returns\n-------\n(Mesh, dict)\n    What was made, and what was done, as `handpiece mesh repair --json` "
              "tells.\n\n"
              "Raises\n------\nError\n    Too much would be lost, or nothing is left.")
@@ -143,7 +160,8 @@ void bindMesh(py::module_& module) {
     module.def("read_mesh", &readMesh, py::arg("path"), py::arg("unit") = "mm",
                "Read a STL, PLY or OBJ file.\n\n"
                "Parameters\n----------\npath : path\nunit : str\n    Of the file: mm, cm, m, inch or um.\n\n"
-               "Returns\n-------\nMesh\n\nRaises\n------\nError\n    No mesh, damaged, or not to be read.");
+               "Returns\n-------\nMesh\n\nRaises\n------\nError\n    No mesh, damaged, or not to be read.\n\n"
+               "Warns\n-----\nUserWarning\n    Something was left out of the file.");
 }
 
 }  // namespace handpiece::python

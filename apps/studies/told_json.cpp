@@ -56,6 +56,13 @@ Json toJson(const geometry::RepairReport& r) {
                          {"perimeter_mm", h.perimeterMm},
                          {"area_mm2", h.areaMm2},
                          {"centre_mm", toJson(h.centreMm)}});
+    Json bases = Json::array();
+    for (const geometry::MadeBase& b : r.bases)
+        bases.push_back({{"edges", b.edges},
+                         {"perimeter_mm", b.perimeterMm},
+                         {"depth_mm", b.depthMm},
+                         {"area_mm2", b.areaMm2},
+                         {"down", toJson(b.downMm)}});
     return {{"weld_mm", r.weldMm},
             {"welded_vertices", r.weldedVertices},
             {"removed_degenerate_faces", r.removedDegenerateFaces},
@@ -72,6 +79,7 @@ Json toJson(const geometry::RepairReport& r) {
             {"closed_holes", r.holes.size()},
             {"added_faces", r.addedFaces},
             {"holes", std::move(holes)},
+            {"bases", std::move(bases)},
             {"turned_flat_faces", r.turnedFlatFaces},
             {"removed_crossing_faces", r.removedCrossingFaces},
             {"removed_crossing_area_mm2", r.removedCrossingAreaMm2},

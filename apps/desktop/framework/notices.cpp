@@ -122,6 +122,8 @@ constexpr Row kRows[] = {
     {Notice::caseVanished, "case-vanished", Kind::warning,
      QT_TRANSLATE_NOOP("Notices", "The tooth you opened is no longer at %1. It was saved together with the attempt."),
      0, QT_TRANSLATE_NOOP("Notices", "Save as...")},
+    {Notice::fileLeftOut, "file-left-out", Kind::warning,
+     QT_TRANSLATE_NOOP("Notices", "Not all of %1 was taken as it is. Technical detail: %2")},
     {Notice::cacheRenewed, "cache-renewed", Kind::hint,
      QT_TRANSLATE_NOOP("Notices", "What was kept at %1 could not be used: it is made anew.")},
     {Notice::cacheNotKept, "cache-not-kept", Kind::warning,

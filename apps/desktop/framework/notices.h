@@ -54,6 +54,7 @@ enum class Notice {
     handedInPart,
     otherEngine,
     caseVanished,
+    fileLeftOut,
     cacheRenewed,
     cacheNotKept,
     saved,

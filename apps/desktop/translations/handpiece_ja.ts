@@ -1321,10 +1321,6 @@
         <source>Surface before %1 mm², after %2 mm².</source>
         <translation>表面積：前 %1 mm²、後 %2 mm²。</translation>
     </message>
-    <message>
-        <source>Pairs of faces that still cross: %1. It may be refused again.</source>
-        <translation>まだ交差する面の組：%1。再び開けないことがあります。</translation>
-    </message>
 </context>
 <context>
     <name>Notation</name>
@@ -1582,6 +1578,10 @@
     <message>
         <source>Save as...</source>
         <translation>名前を付けて保存...</translation>
+    </message>
+    <message>
+        <source>Not all of %1 was taken as it is. Technical detail: %2</source>
+        <translation>%1 の一部はそのまま読み込まれていません。技術的な詳細：%2</translation>
     </message>
     <message>
         <source>What was kept at %1 could not be used: it is made anew.</source>

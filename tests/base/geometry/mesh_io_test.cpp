@@ -15,6 +15,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/read_notes.h"
 #include "support/random.h"
 
 #define TINYOBJLOADER_IMPLEMENTATION
@@ -25,6 +26,7 @@ namespace handpiece::geometry {
 namespace {
 
 using core::Vec3;
+using test::boxMesh;
 using testing::HasSubstr;
 using Bytes = std::vector<std::byte>;
 
@@ -201,6 +203,135 @@ TEST(MeshIo, EmptyAndForeignFiles) {
                 HasSubstr("\"zero\" in facet 1 is not a number"));
     EXPECT_THAT(errorOf(Bytes(84), MeshFormat::stl), HasSubstr("no faces"));
     EXPECT_THROW((void)readMesh(std::filesystem::path("/nowhere/x.stl")), core::Error);
+}
+
+/// A file that is often saved under a mesh's name, and what is said of it: what it is, and what to do.
+struct Foreign {
+    std::string bytes;
+    const char *what, *remedy;
+};
+
+TEST(MeshIo, FilesOfOtherKindsAreNamed) {
+    const std::string ascii = asciiStl(floatSphere());
+    std::string little("\xff\xfe"), big, bare;
+    for (const char c : ascii) {
+        little += std::string{c, '\0'};
+        big += std::string{'\0', c};
+        bare += std::string{c, '\0'};
+    }
+    const std::string zip = std::string("PK\x03\x04\x14\0\0\0", 8) + std::string(200, '\0');
+    const Foreign kinds[] = {
+        {"<!DOCTYPE html>\n<html><head><title>404</title></head><body>Not found</body></html>\n", "web page (HTML)",
+         "download the mesh"},
+        {"\r\n  <HTML><BODY>Please log in" + std::string(400, ' '), "web page (HTML)", "download the mesh"},
+        {"\xef\xbb\xbf<!doctype HTML>" + std::string(400, ' '), "web page (HTML)", "download the mesh"},
+        {"<?xml version=\"1.0\"?><model unit=\"millimeter\"/>", "XML", "export STL"},
+        {"{\"message\": \"Not Found\"}", "JSON", "download"},
+        {little, "UTF-16", "binary STL"},
+        {big, "UTF-16", "binary STL"},
+        {bare, "UTF-16", "binary STL"},
+        {"version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 132735\n", "Git LFS", "git lfs pull"},
+        {zip, "zip archive", "unpack"},
+        {std::string("\x1f\x8b\x08\0", 4) + std::string(200, 'x'), "gzip", "unpack"},
+        {"%PDF-1.7\n" + std::string(200, 'x'), "PDF", "mesh itself"},
+        {"ISO-10303-21;\nHEADER;\n" + std::string(200, 'x'), "STEP", "export STL"},
+        {std::string(128, '\0') + "DICM" + std::string(200, '\0'), "DICOM", "handpiece scan"},
+        {"Dear Sir, this is the tooth that I told you of." + std::string(100, '.'), "text that begins with \"Dear\"",
+         "export"},
+    };
+    for (const Foreign& kind : kinds) {
+        SCOPED_TRACE(kind.what);
+        for (const MeshFormat hint : {MeshFormat::stl, MeshFormat::unknown}) {
+            if (hint == MeshFormat::unknown && kind.bytes.starts_with("Dear")) continue;
+            const std::string told = errorOf(kind.bytes, hint);
+            EXPECT_THAT(told, HasSubstr("memory: this is "));
+            EXPECT_THAT(told, HasSubstr(kind.what));
+            EXPECT_THAT(told, HasSubstr(kind.remedy));
+        }
+    }
+    EXPECT_THAT(errorOf("", MeshFormat::stl), HasSubstr("export or download"));
+    // A binary file's header may say anything.
+    for (const char* header : {"solid made by some program", "PK\x03\x04", "<html>", "{", "%PDF-1.4"}) {
+        Bytes data = binaryStl(floatSphere());
+        std::memset(data.data(), ' ', 80);
+        std::memcpy(data.data(), header, std::strlen(header));
+        expectSameFaces(readMesh(data, MeshFormat::stl, "memory"), floatSphere());
+    }
+    // "solid", and a count that lies.
+    Bytes data = binaryStl(floatSphere());
+    std::memset(data.data(), ' ', 80);
+    std::memcpy(data.data(), "solid x", 7);
+    put(data, 80, std::uint32_t{7});
+    EXPECT_EQ(errorOf(data, MeshFormat::stl), "");
+}
+
+TEST(MeshIo, WordsOfAsciiStl) {
+    const TriangleMesh mesh = floatSphere();
+    const std::string text = asciiStl(mesh);
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string changed = text;
+        for (std::size_t at = changed.find(from); at != std::string::npos; at = changed.find(from, at + to.size()))
+            changed.replace(at, from.size(), to);
+        return changed;
+    };
+    for (const auto& [from, to] : {std::pair{"endfacet", "end facet"},
+                                   {"endfacet", "END  FACET"},
+                                   {"endloop", "end loop"},
+                                   {"endsolid", "end solid"}}) {
+        ReadNotes notes;
+        expectSameFaces(fromText(with(from, to), MeshFormat::stl, &notes), mesh);
+        EXPECT_THAT(notes, testing::IsEmpty());
+    }
+    EXPECT_THAT(errorOf(with("endfacet", "endfcaet")), HasSubstr("facet 1 has no \"endfacet\": \"endfcaet\" stands"));
+    EXPECT_THAT(errorOf(with("endfacet", "")), HasSubstr("facet 1 has no \"endfacet\""));
+    const std::string split = with("endfacet", "end facet");
+    EXPECT_THAT(errorOf(split.substr(0, split.find("end facet") + 3)),
+                HasSubstr("the file ends in the middle of facet 1"));
+}
+
+TEST(MeshIo, WhatIsLeftOutIsTold) {
+    const TriangleMesh mesh = floatSphere();
+    Bytes glued = binaryStl(mesh);
+    const Bytes second = binaryStl(boxMesh({0, 0, 0}, {1, 2, 3}));
+    for (int files = 2; files < 4; ++files) {
+        glued.insert(glued.end(), second.begin(), second.end());
+        ReadNotes notes;
+        expectSameFaces(readMesh(glued, MeshFormat::stl, "memory", &notes), mesh);
+        ASSERT_EQ(notes.size(), 1u);
+        EXPECT_THAT(notes[0],
+                    HasSubstr(fmt::format("only the first of {} STL files in one is read, with {} facets: the {} "
+                                          "facets after it are left out",
+                                          files, mesh.triangles.size(), 12 * (files - 1))));
+    }
+    ReadNotes notes;
+    (void)fromText("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 1 4\nl 1 2\np 3\nsurf 0 1 0 1 1 2 3 4\n",
+                   MeshFormat::obj, &notes);
+    EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("2 elements of points or lines are left out"),
+                                            HasSubstr("1 free-form curve or surface is left out"),
+                                            HasSubstr("1 of 2 faces has two corners in one place")));
+    notes.clear();
+    (void)fromText(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+        "3 0 1 2\n2 0 1\n",
+        MeshFormat::ply, &notes);
+    EXPECT_THAT(notes, testing::ElementsAre(HasSubstr("1 face has fewer than three corners")));
+}
+
+TEST(MeshIo, WhoListensHearsWhatNobodyAskedFor) {
+    Bytes trailing = binaryStl(floatSphere());
+    trailing.resize(trailing.size() + 30);
+    std::vector<std::string> heard;
+    listenToNotes([&](const std::string& where, const std::string& note) { heard.push_back(where + ": " + note); });
+    (void)readMesh(trailing, MeshFormat::stl, "memory");
+    EXPECT_THAT(heard, testing::ElementsAre("memory: 30 bytes after the last facet are left out"));
+    ReadNotes notes;
+    (void)readMesh(trailing, MeshFormat::stl, "memory", &notes);
+    EXPECT_EQ(notes.size(), 1u);
+    EXPECT_EQ(heard.size(), 1u) << "told to who asked";
+    listenToNotes({});
+    (void)readMesh(trailing, MeshFormat::stl, "memory");
+    EXPECT_EQ(heard.size(), 1u);
 }
 
 TEST(MeshIo, CoordinatesMustBeFinite) {

@@ -5,6 +5,7 @@
 
 #include <set>
 
+#include "base/geometry/brute_crossings.h"
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/parallel.h"
 #include "support/random.h"
@@ -14,34 +15,9 @@ namespace {
 
 using core::Vec3;
 using test::boxMesh;
+using test::bruteForce;
 using test::joined;
 using test::sphereMesh;
-
-// Independent of the finder: all pairs, and one small linear system for each edge and face instead of signed heights.
-std::set<std::pair<std::uint32_t, std::uint32_t>> bruteForce(const TriangleMesh& mesh) {
-    const auto pierces = [&](const Vec3& p, const Vec3& q, const Triangle& t) {
-        core::Mat3 system;
-        system << mesh.vertices[t[1]] - mesh.vertices[t[0]], mesh.vertices[t[2]] - mesh.vertices[t[0]], p - q;
-        if (std::abs(system.determinant()) < 1e-14) return false;
-        const Vec3 s = system.inverse() * (p - mesh.vertices[t[0]]);
-        return s.x() > 0 && s.y() > 0 && s.x() + s.y() < 1 && s.z() > 0 && s.z() < 1;
-    };
-    std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        for (std::uint32_t j = 0; j < mesh.triangles.size(); ++j) {
-            const Triangle &a = mesh.triangles[i], &b = mesh.triangles[j];
-            bool share = false;
-            for (const std::uint32_t v : a)
-                for (const std::uint32_t w : b)
-                    share = share || v == w;
-            if (share) continue;
-            for (int k = 0; k < 3; ++k)
-                if (pierces(mesh.vertices[a[static_cast<std::size_t>(k)]],
-                            mesh.vertices[a[static_cast<std::size_t>((k + 1) % 3)]], b))
-                    pairs.emplace(std::min(i, j), std::max(i, j));
-        }
-    return pairs;
-}
 
 std::set<std::pair<std::uint32_t, std::uint32_t>> found(const TriangleMesh& mesh) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> pairs;
@@ -119,6 +95,40 @@ TEST(SelfIntersection, AFoldIsFound) {
     EXPECT_TRUE(selfIntersections(mesh).empty());
     mesh.vertices[3] = {0.4, 0.7, 0.1};
     EXPECT_TRUE(selfIntersections(mesh).empty());
+}
+
+TEST(SelfIntersection, ATreeSaysOfNewFacesWhatTheFinderSays) {
+    std::mt19937_64 generator(test::seed());
+    const TriangleMesh torus = test::torusMesh(5, 2, 12);
+    const CrossingTree tree(torus);
+    const auto pick = [&] {
+        return static_cast<std::uint32_t>(test::uniform(generator, 0, 1) * static_cast<double>(torus.vertices.size()));
+    };
+    std::size_t crossed = 0, clear = 0;
+    for (int round = 0; round < 400; ++round) {
+        const Triangle face{pick(), pick(), pick()};
+        if (face[0] == face[1] || face[1] == face[2] || face[2] == face[0]) continue;
+        TriangleMesh with = torus;
+        with.triangles.push_back(face);
+        const bool isCrossed = !selfIntersections(with).empty();
+        EXPECT_EQ(tree.isCrossed(face), isCrossed) << round;
+        ++(isCrossed ? crossed : clear);
+    }
+    EXPECT_GT(crossed, 50u);
+    EXPECT_GT(clear, 10u);
+    // Chords of a ball lie inside; from a place over it to its far side they go through a face.
+    TriangleMesh ball = sphereMesh({1, 2, 3}, 4, 6);
+    const auto over = static_cast<std::uint32_t>(ball.vertices.size());
+    ball.vertices.emplace_back(1, 2, 20);
+    const CrossingTree other(ball);
+    for (std::uint32_t v = 0; v < over; ++v) {
+        EXPECT_FALSE(other.isPierced(v, (v * 7 + 3) % over)) << v;
+        if (ball.vertices[v].z() < 2.0) {
+            EXPECT_TRUE(other.isPierced(v, over)) << v;
+        } else if (ball.vertices[v].z() > 5.0) {
+            EXPECT_FALSE(other.isPierced(v, over)) << v;
+        }
+    }
 }
 
 TEST(SelfIntersection, SameAtAnyThreadCount) {

@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QSaveFile>
 #include <QStatusBar>
+#include <mutex>
 
 #include "desktop/features/files/mend_dialog.h"
 #include "desktop/framework/job_strip.h"
@@ -19,6 +20,7 @@
 #include "desktop/widgets/status_line.h"
 #include "desktop/work/simulator.h"
 #include "desktop/work/this_language.h"
+#include "handpiece/base/geometry/read_notes.h"
 
 namespace handpiece::desktop {
 namespace {
@@ -185,7 +187,35 @@ void FilesFeature::showTouch(const cases::Case& surroundings) {
     view_.setPermissions(exercise::permissionsOf(&withoutHints, exercise::WorkMode::work));
 }
 
+struct FilesFeature::Ear {
+    std::mutex mutex;
+    FilesFeature* of;
+};
+
+FilesFeature::~FilesFeature() {
+    const std::lock_guard lock(ear_->mutex);
+    ear_->of = nullptr;
+}
+
+void FilesFeature::hearOfFiles() {
+    ear_ = std::make_shared<Ear>();
+    ear_->of = this;
+    geometry::listenToNotes([ear = ear_](const std::string& where, const std::string& note) {
+        const std::lock_guard lock(ear->mutex);
+        if (ear->of == nullptr) return;
+        const QString file =
+            QFileInfo(QString::fromLocal8Bit(where.data(), static_cast<qsizetype>(where.size()))).fileName();
+        QMetaObject::invokeMethod(
+            ear->of,
+            [of = ear->of, file, what = QString::fromStdString(note)] {
+                of->window_.notices().tell(Notice::fileLeftOut, {file, what});
+            },
+            Qt::QueuedConnection);
+    });
+}
+
 void FilesFeature::connectMessages() {
+    hearOfFiles();
     connect(&simulator_, &Simulator::failed, &window_, &MainWindow::showProblem);
     connect(&simulator_, &Simulator::saved, this, &FilesFeature::takeSaved);
     connect(&simulator_, &Simulator::unsavedChanged, this, &FilesFeature::showTitle);

@@ -4,6 +4,7 @@
 /// Opening, saving, exports, pictures, reports; what the window's title says, and the work that goes on beside it.
 
 #include <functional>
+#include <memory>
 
 #include "desktop/framework/feature.h"
 
@@ -16,6 +17,7 @@ class FilesFeature : public Feature {
   public:
     enum class Command { openCase, openStl, resume, save, saveAs, stl, tissues, picture, report, quit };
     explicit FilesFeature(const FeatureContext& context);
+    ~FilesFeature() override;
     void showDocument() override;
 
   private:
@@ -34,11 +36,16 @@ class FilesFeature : public Feature {
     [[nodiscard]] QString exerciseTitle() const;
     void showTouch(const cases::Case& surroundings);
     void showTitle();
+    void hearOfFiles();
     void offerToMend(ErrorDialog* dialog);
     void mend();
 
+    /// Where what was left out of a file goes while this window is there; told from any thread.
+    struct Ear;
+
     CommandSet<Command> commands_;
     QMenu* recent_;
+    std::shared_ptr<Ear> ear_;
     QString lastOpened_;     ///< or tried to
     double prepared_ = 0.0;  ///< of the tooth that comes
 };

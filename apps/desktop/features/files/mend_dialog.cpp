@@ -49,8 +49,6 @@ QString mendWords(const geometry::RepairReport& report) {
     if (lines.isEmpty()) lines << Texts::tr("Nothing had to be changed but where vertices meet.");
     lines
         << Texts::tr("Surface before %1 mm², after %2 mm².").arg(mm2(report.before.areaMm2), mm2(report.after.areaMm2));
-    add(report.crossingFaces,
-        Texts::tr("Pairs of faces that still cross: %1. It may be refused again.").arg(count(report.crossingFaces)));
     return lines.join(QLatin1Char('\n'));
 }
 
@@ -90,6 +88,7 @@ MendDialog::MendDialog(const std::filesystem::path& file, QWidget* parent)
     job_ = std::make_unique<Job>(windowTitle(), [file, mended = mended_](const core::Progress&) {
         mended->mesh = geometry::readMesh(file);
         mended->report = geometry::repair(mended->mesh);
+        geometry::requireUncrossed(mended->report, {}, file.string());
     });
     connect(job_.get(), &Job::done, this, [this] { tell(mended_->report); });
     connect(job_.get(), &Job::failed, this, [this](const Problem& problem) {

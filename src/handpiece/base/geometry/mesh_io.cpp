@@ -6,7 +6,9 @@
 #include <cstring>
 
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/mesh_io_formats.h"
+#include "handpiece/base/geometry/read_notes.h"
 
 namespace handpiece::geometry {
 namespace formats {
@@ -85,6 +87,41 @@ MeshFormat detect(std::span<const std::byte> data, std::string_view text, MeshFo
     return data.size() > 84 && !isText(text) ? MeshFormat::stl : MeshFormat::unknown;
 }
 
+TriangleMesh readTold(const Source& source, MeshFormat hint) {
+    if (source.data.empty()) source.fail("the file is empty", "export or download the mesh again");
+    if (!formats::isExactBinaryStl(source.data)) formats::refuseForeign(source);
+    bool binary = false;
+    const MeshFormat format = detect(source.data, source.text(), hint, binary);
+    if (hint != MeshFormat::unknown && format != MeshFormat::unknown && hint != format)
+        source.note(fmt::format("named like {}, but its content is {}", formatName(hint), formatName(format)));
+    TriangleMesh mesh;
+    switch (format) {
+        case MeshFormat::stl:
+            // A count of facets, and the numbers after it, have bytes of zero.
+            if (binary && isText(source.text()) && source.data.size() >= 84)
+                source.fail(fmt::format("this is text that begins with {}, and no STL",
+                                        formats::quoted(formats::Words(source.text()).next())),
+                            "export or download the mesh again");
+            mesh = binary ? formats::readBinaryStl(source) : formats::readAsciiStl(source);
+            break;
+        case MeshFormat::ply:
+            mesh = formats::readPly(source);
+            break;
+        case MeshFormat::obj:
+            mesh = formats::readObj(source);
+            break;
+        case MeshFormat::unknown:
+            source.fail("this is no STL, PLY or OBJ file", "give a mesh in one of these formats");
+    }
+    if (mesh.triangles.empty()) source.fail("the file has no faces", "export a surface of triangles or polygons");
+    const auto flat =
+        std::count_if(mesh.triangles.begin(), mesh.triangles.end(), [](const Triangle& t) { return repeatsCorner(t); });
+    if (flat > 0)
+        source.note(fmt::format("{} of {} faces {} two corners in one place and count{} for nothing", flat,
+                                mesh.triangles.size(), flat == 1 ? "has" : "have", flat == 1 ? "s" : ""));
+    return mesh;
+}
+
 }  // namespace
 
 MeshFormat meshFormatOf(const std::filesystem::path& path) {
@@ -104,27 +141,13 @@ TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const st
     if (data.size() >= 3 && data[0] == std::byte{0xef} && data[1] == std::byte{0xbb} && data[2] == std::byte{0xbf} &&
         !formats::isExactBinaryStl(data))
         data = data.subspan(3);
-    const Source source{data, where, notes};
-    if (data.empty()) source.fail("the file is empty", "export the mesh again");
-    bool binary = false;
-    const MeshFormat format = detect(data, source.text(), hint, binary);
-    if (hint != MeshFormat::unknown && format != MeshFormat::unknown && hint != format)
-        source.note(fmt::format("named like {}, but its content is {}", formatName(hint), formatName(format)));
-    TriangleMesh mesh;
-    switch (format) {
-        case MeshFormat::stl:
-            mesh = binary ? formats::readBinaryStl(source) : formats::readAsciiStl(source);
-            break;
-        case MeshFormat::ply:
-            mesh = formats::readPly(source);
-            break;
-        case MeshFormat::obj:
-            mesh = formats::readObj(source);
-            break;
-        case MeshFormat::unknown:
-            source.fail("this is no STL, PLY or OBJ file", "give a mesh in one of these formats");
-    }
-    if (mesh.triangles.empty()) source.fail("the file has no faces", "export a surface of triangles or polygons");
+    ReadNotes found;
+    const Source source{data, where, &found};
+    TriangleMesh mesh = readTold(source, hint);
+    if (notes)
+        notes->insert(notes->end(), found.begin(), found.end());
+    else
+        tellNotes(where, found);
     return mesh;
 }
 

@@ -30,7 +30,8 @@ using ReadNotes = std::vector<std::string>;
 ///
 /// STL (binary, also with "solid" in its header or a wrong count; ASCII) has its equal vertices merged (same bits, -0 =
 /// +0), numbered by first appearance. PLY (ASCII, binary of both ends) and OBJ keep their vertices; polygons become
-/// fans. Throws core::Error on empty, truncated or senseless files, coordinates that are not finite, more than 2^31
+/// triangles. What was left out of a file goes to `notes`, or without them to whoever listens (read_notes.h). Throws
+/// core::Error on empty, truncated or senseless files, coordinates that are not finite, more than 2^31
 /// corners, more bytes than kMaxMeshBytes.
 [[nodiscard]] TriangleMesh readMesh(const std::filesystem::path& path, ReadNotes* notes = nullptr);
 /// The same from memory. `hint` decides only where the content is silent; `where` names the source in errors.

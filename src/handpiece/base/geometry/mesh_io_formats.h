@@ -36,6 +36,9 @@ struct Source {
     }
 };
 
+/// Throws core::Error, with what it is, for a file of another kind that is often saved under a mesh's name.
+void refuseForeign(const Source& source);
+
 /// True when a binary STL's length agrees with the count in its header.
 [[nodiscard]] bool isExactBinaryStl(std::span<const std::byte> data);
 [[nodiscard]] TriangleMesh readBinaryStl(const Source& source);

@@ -57,7 +57,7 @@ TriangleMesh readObj(const Source& source) {
     std::string storage;
     std::vector<std::uint32_t> corners;
     Polygons polygons;
-    std::uint64_t lineNumber = 0, highest = 0, highestLine = 0;
+    std::uint64_t lineNumber = 0, highest = 0, highestLine = 0, lines = 0, curved = 0;
     // A file that is cut short ends in the middle of a line, seldom where one cannot tell.
     const bool endsOpen = text.back() != '\n' && text.back() != '\r';
     std::uint32_t form = 0;
@@ -114,6 +114,10 @@ TriangleMesh readObj(const Source& source) {
             polygons.add(mesh.triangles, corners);
             if (mesh.triangles.size() > kMaxFaces)
                 source.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
+        } else if (key == "l" || key == "p") {
+            ++lines;
+        } else if (key == "curv" || key == "curv2" || key == "surf") {
+            ++curved;
         }
         // Everything else (normals, texture, groups, materials, comments) says nothing about the surface.
     }
@@ -123,6 +127,13 @@ TriangleMesh readObj(const Source& source) {
             "export the mesh again");
     bad.check(source, "vertices", "vertex");
     settle(polygons, mesh, source);
+    if (lines > 0)
+        source.note(fmt::format("{} of points or lines {} left out: they are no surface",
+                                lines == 1 ? "an element" : fmt::format("{} elements", lines),
+                                lines == 1 ? "is" : "are"));
+    if (curved > 0)
+        source.note(fmt::format("{} {} left out: export it as triangles", curved,
+                                curved == 1 ? "free-form curve or surface is" : "free-form curves or surfaces are"));
     std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t)

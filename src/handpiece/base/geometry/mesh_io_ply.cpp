@@ -171,6 +171,12 @@ class Reader {
                 fmt::format("face {} names vertex {} of {}", highestFace_ + 1, highest_, mesh_.vertices.size()),
                 "export the mesh again");
         settle(polygons_, mesh_, source_);
+        if (noFaces_ > 0)
+            source_.note(fmt::format("{} {} fewer than three corners: points and lines are left out", noFaces_,
+                                     noFaces_ == 1 ? "face has" : "faces have"));
+        for (const Element& element : header_.elements)
+            if (element.name == "tristrips" && element.count > 0)
+                source_.note("strips of triangles (tristrips) are left out: export it as triangles");
         if (header_.encoding == Encoding::ascii && !Words::isSpace(source_.text().back()))
             source_.note(fmt::format("the last line has no end: see that face {} is whole", mesh_.triangles.size()));
         return std::move(mesh_);
@@ -258,6 +264,7 @@ class Reader {
                     corners.push_back(index);
                 });
             }
+            if (corners.size() < 3) ++noFaces_;
             polygons_.add(mesh_.triangles, corners);
             if (mesh_.triangles.size() > kMaxFaces)
                 source_.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
@@ -270,7 +277,7 @@ class Reader {
     TriangleMesh mesh_;
     Polygons polygons_;
     BadCoordinates bad_;
-    std::uint64_t highest_ = 0, highestFace_ = 0;
+    std::uint64_t highest_ = 0, highestFace_ = 0, noFaces_ = 0;
 };
 
 }  // namespace

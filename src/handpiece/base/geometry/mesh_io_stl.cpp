@@ -17,6 +17,24 @@ std::uint32_t countInHeader(std::span<const std::byte> data) {
     return count;
 }
 
+// What follows the facets that are read.
+std::string afterTheLast(std::span<const std::byte> rest, std::uint64_t facets) {
+    std::uint64_t files = 0, more = 0;
+    std::span<const std::byte> at = rest;
+    while (at.size() > kHeaderBytes && (at.size() - kHeaderBytes) / kFacetBytes >= countInHeader(at) &&
+           countInHeader(at) > 0) {
+        ++files;
+        more += countInHeader(at);
+        at = at.subspan(kHeaderBytes + countInHeader(at) * std::size_t{kFacetBytes});
+    }
+    if (files > 0 && at.empty())
+        return fmt::format(
+            "only the first of {} STL files in one is read, with {} facets: the {} facets after it are "
+            "left out; save each as a file of its own",
+            files + 1, facets, more);
+    return fmt::format("{} bytes after the last facet are left out", rest.size());
+}
+
 // How many facets to read: the file's length decides, the header is only compared with it.
 std::uint64_t facetsOf(const Source& source) {
     const std::span<const std::byte> data = source.data;
@@ -28,8 +46,8 @@ std::uint64_t facetsOf(const Source& source) {
     const std::uint64_t whole = (data.size() - kHeaderBytes) / kFacetBytes;
     const std::uint64_t rest = (data.size() - kHeaderBytes) % kFacetBytes;
     if (whole == said || (whole > said && said > 0 && rest != 0)) {
-        const std::uint64_t trailing = data.size() - kHeaderBytes - said * kFacetBytes;
-        if (trailing > 0) source.note(fmt::format("{} bytes after the last facet were ignored", trailing));
+        const std::uint64_t end = kHeaderBytes + said * kFacetBytes;
+        if (end < data.size()) source.note(afterTheLast(data.subspan(end), said));
         return said;
     }
     if (rest != 0)
@@ -37,6 +55,13 @@ std::uint64_t facetsOf(const Source& source) {
                     "export or copy the mesh again");
     source.note(fmt::format("the header says {} facets, the file holds {}", said, whole));
     return whole;
+}
+
+bool isWord(std::string_view word, std::string_view lower) {
+    if (word.size() != lower.size()) return false;
+    for (std::size_t i = 0; i < word.size(); ++i)
+        if ((word[i] | 0x20) != lower[i]) return false;
+    return true;
 }
 
 }  // namespace
@@ -76,28 +101,41 @@ TriangleMesh readAsciiStl(const Source& source) {
     BadCoordinates bad;
     Words words(source.text());
     std::string_view word = words.next();
-    const auto is = [&](std::string_view lower) {
-        if (word.size() != lower.size()) return false;
-        for (std::size_t i = 0; i < word.size(); ++i)
-            if ((word[i] | 0x20) != lower[i]) return false;
+    const auto is = [&](std::string_view lower) { return isWord(word, lower); };
+    // "end facet" is written for "endfacet" too; what belongs to the end is taken with it.
+    const auto isEnd = [&](std::string_view of) {
+        if (word.size() == 3 + of.size()) return isWord(word.substr(0, 3), "end") && isWord(word.substr(3), of);
+        if (!is("end")) return false;
+        Words ahead = words;
+        if (!isWord(ahead.next(), of)) return false;
+        words = ahead;
         return true;
     };
     // "solid" may stand several times, each with a name up to the end of its line; a name may hold any word.
     const auto facet = [&] { return static_cast<std::uint64_t>(mesh.triangles.size()) + bad.count + 1; };
     bool isOpen = false;  // a solid that has not ended
     for (; !word.empty(); word = words.next()) {
-        if (is("solid") || is("endsolid")) {
+        if (is("solid") || isEnd("solid")) {
             isOpen = is("solid");
             words.skipLine();
         } else if (is("facet")) {
             std::uint32_t corner[3] = {0, 0, 0};
             int corners = 0;
             bool good = true;
-            for (word = words.next(); !is("endfacet"); word = words.next()) {
-                if (word.empty() || is("facet") || is("endsolid"))
+            std::string_view odd;  // stands where "endfacet" should
+            for (word = words.next(); !isEnd("facet"); word = words.next()) {
+                if (word.empty())
                     source.fail(fmt::format("the file ends in the middle of facet {}", facet()),
                                 "export or copy the mesh again");
-                if (!is("vertex")) continue;  // normal, outer, loop, endloop
+                if (is("facet") || isEnd("solid"))
+                    source.fail(fmt::format("facet {} has no \"endfacet\"{}", facet(),
+                                            odd.empty() ? "" : ": " + quoted(odd) + " stands there"),
+                                "export the mesh again");
+                if (isEnd("loop")) continue;
+                if (!is("vertex")) {  // normal, outer, loop
+                    if (corners == 3 && odd.empty()) odd = word;
+                    continue;
+                }
                 if (corners == 3)
                     source.fail(fmt::format("facet {} has more than three vertices", facet()),
                                 "export it as triangles");

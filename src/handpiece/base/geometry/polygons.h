@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Polygons of files that hold more than triangles. Only mesh_io*.cpp include it.
+/// Polygons of files that hold more than triangles. Only mesh_io*.cpp and repair_base.cpp include it.
 
 #include <cstddef>
 #include <cstdint>

@@ -13,6 +13,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/mesh_edges.h"
+#include "handpiece/base/geometry/repair_base.h"
 #include "handpiece/base/geometry/repair_holes.h"
 #include "handpiece/base/geometry/self_intersection.h"
 
@@ -38,6 +39,7 @@ class Mender {
         close();
         const double closedVolumeMm3 = enclosedVolumeMm3(mesh_);
         mendCrossings();
+        tellCrossings();
         std::stable_sort(report_.holes.begin(), report_.holes.end(),
                          [](const ClosedHole& a, const ClosedHole& b) { return a.perimeterMm > b.perimeterMm; });
         requireLittleLost(closedVolumeMm3);
@@ -94,6 +96,7 @@ class Mender {
 
     void closeOpenLoops() {
         const std::size_t before = mesh_.triangles.size();
+        if (settings_.base && report_.bases.empty()) report_.bases = addBases(mesh_, settings_.baseDepthMm);
         const std::vector<ClosedHole> holes = closeHoles(mesh_);
         report_.holes.insert(report_.holes.end(), holes.begin(), holes.end());
         report_.addedFaces += mesh_.triangles.size() - before;
@@ -584,6 +587,16 @@ class Mender {
         }
     }
 
+    void tellCrossings() {
+        if (report_.crossingFaces == 0) return;
+        const std::vector<CrossingFaces> crossings = selfIntersections(mesh_);
+        report_.firstCrossingMm = crossings.front().pointMm;
+        report_.crossingMade =
+            static_cast<std::size_t>(std::count_if(crossings.begin(), crossings.end(), [&](const CrossingFaces& c) {
+                return source_[c.first] == kMade || source_[c.second] == kMade;
+            }));
+    }
+
     // Takes the faces that cross, and `rings` of their neighbours, out and closes what is open then. False where that
     // is no local matter.
     bool patch(int rings) {
@@ -726,6 +739,9 @@ RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings) {
         throw core::Error(
             fmt::format("a welding distance of {} mm would melt a mesh of {:.4g} mm", settings.weldMm, diagonalMm),
             "--weld", "give a distance below the smallest detail");
+    if (!std::isfinite(settings.baseDepthMm) || settings.baseDepthMm > 10.0 * diagonalMm)
+        throw core::Error(fmt::format("a base {} mm under a mesh of {:.4g} mm", settings.baseDepthMm, diagonalMm),
+                          "--base-depth", "give a depth of the size of the mesh at most");
     if (!(settings.debrisAreaShare >= 0.0 && settings.debrisAreaShare <= 1.0))
         throw core::Error("the share of the area below which a shell is debris must be 0 to 1", "debris");
     report.weldMm = settings.weldMm < 0.0 ? kAutomaticWeldShare * diagonalMm : settings.weldMm;
@@ -741,6 +757,23 @@ RepairReport repair(TriangleMesh& mesh, const RepairSettings& settings) {
                           "mesh", "mend it in a mesh editor");
     mesh = std::move(mended);
     return report;
+}
+
+void requireUncrossed(const RepairReport& report, const RepairSettings& settings, const std::string& where) {
+    if (report.crossingFaces == 0) return;
+    const core::Vec3& at = report.firstCrossingMm;
+    const std::string pairs = fmt::format(
+        "{} of faces, the first at ({:.3f}, {:.3f}, {:.3f})",
+        report.crossingFaces == 1 ? "a pair" : fmt::format("{} pairs", report.crossingFaces), at.x(), at.y(), at.z());
+    if (report.crossingMade == 0)
+        throw core::Error("the surface crosses itself, and not only in small spots: " + pairs, where,
+                          "unite solids that overlap, or cut out what crosses, in a mesh editor");
+    throw core::Error("a hole cannot be closed without crossing the surface: " + pairs, where,
+                      settings.base || report.holes.empty()
+                          ? "trim the border where it folds under, or close it in a mesh editor"
+                          : "stand its border on a base (handpiece mesh repair --base), trim it where it folds under, "
+                            "or close it in a mesh "
+                            "editor");
 }
 
 }  // namespace handpiece::geometry

@@ -47,15 +47,16 @@ std::uint64_t spread(std::uint64_t x) {
     return (x | x << 2) & 0x1249249249249249ull;
 }
 
+}  // namespace
+
 class CrossingFinder {
   public:
-    explicit CrossingFinder(const TriangleMesh& mesh) : vertices_(mesh.vertices) {
+    explicit CrossingFinder(const TriangleMesh& mesh) : place_(mesh.vertices.size()) {
         core::Box box;
         formats::VertexMerger<double> places(mesh.vertices.size());
-        std::vector<std::uint32_t> place(mesh.vertices.size());
         for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
             const Vec3& p = mesh.vertices[v];
-            place[v] = places.add(p.x(), p.y(), p.z());
+            place_[v] = places.add(p.x(), p.y(), p.z());
         }
         for (const Triangle& t : mesh.triangles)
             for (const std::uint32_t v : t)
@@ -81,17 +82,8 @@ class CrossingFinder {
         }
         std::sort(order.begin(), order.end());
         faces_.reserve(order.size());
-        for (const auto& [code, f] : order) {
-            const Triangle& t = mesh.triangles[f];
-            Face face{f, {place[t[0]], place[t[1]], place[t[2]]}, {}, {}};
-            const Vec3 &a = vertices_[face.corner[0]], &b = vertices_[face.corner[1]], &c = vertices_[face.corner[2]];
-            for (const Vec3* p : {&a, &b, &c})
-                face.box.extend(*p);
-            const Vec3 normal = (b - a).cross(c - a);
-            const double length = normal.norm();
-            face.normal = length > 0.0 ? (normal / length).eval() : Vec3::Zero().eval();
-            faces_.push_back(face);
-        }
+        for (const auto& [code, f] : order)
+            faces_.push_back(faceOf(mesh.triangles[f], f));
         leaves_ = (faces_.size() + kLeaf - 1) / kLeaf;
         levelStart_.push_back(0);
         for (std::size_t n = leaves_;; n = (n + kArity - 1) / kArity) {
@@ -123,8 +115,71 @@ class CrossingFinder {
         return all;
     }
 
+    [[nodiscard]] bool isCrossed(const Triangle& t) const {
+        const Face face = faceOf(t, 0);
+        // Large faces are rare in a box that holds them: what lies on one side of their plane is passed over.
+        const auto mayMeet = [&](const FloatBox& box) {
+            if (!box.meets(face.box)) return false;
+            double middle = -face.normal.dot(vertices_[face.corner[0]]), reach = tolerance_;
+            for (int k = 0; k < 3; ++k) {
+                middle += face.normal[k] * 0.5 * (double{box.min[k]} + double{box.max[k]});
+                reach += std::abs(face.normal[k]) * 0.5 * (double{box.max[k]} - double{box.min[k]});
+            }
+            return std::abs(middle) <= reach;
+        };
+        return anyFace(mayMeet,
+                       [&](const Face& other) { return crossing(face, other).has_value() || isSame(face, other); });
+    }
+
+    [[nodiscard]] bool isPierced(std::uint32_t from, std::uint32_t to) const {
+        const std::uint32_t a = place_[from], b = place_[to];
+        const Vec3 &p = vertices_[a], &q = vertices_[b], way = q - p;
+        const auto mayMeet = [&](const FloatBox& box) {
+            double first = 0.0, last = 1.0;
+            for (int k = 0; k < 3; ++k) {
+                if (way[k] == 0.0) {
+                    if (p[k] < box.min[k] || p[k] > box.max[k]) return false;
+                    continue;
+                }
+                const double x = (box.min[k] - p[k]) / way[k], y = (box.max[k] - p[k]) / way[k];
+                first = std::max(first, std::min(x, y));
+                last = std::min(last, std::max(x, y));
+            }
+            return first <= last + 1e-9;
+        };
+        return anyFace(mayMeet, [&](const Face& f) {
+            for (const std::uint32_t corner : f.corner)
+                if (corner == a || corner == b) return false;
+            const double hp = f.normal.dot(p - vertices_[f.corner[0]]), hq = f.normal.dot(q - vertices_[f.corner[0]]);
+            if (!(std::max(hp, hq) > tolerance_ && std::min(hp, hq) < -tolerance_)) return false;
+            return holds(f, p + way * (hp / (hp - hq)));
+        });
+    }
+
   private:
     static constexpr std::size_t kLeaf = 4, kArity = 4, kPiece = 256;
+
+    // Whether a face that may lie there is such a one.
+    template <class MayMeet, class Is>
+    [[nodiscard]] bool anyFace(MayMeet mayMeet, Is is) const {
+        std::vector<std::pair<std::size_t, std::size_t>> waiting;
+        if (!faces_.empty()) waiting.emplace_back(levelSize_.size() - 1, 0);
+        while (!waiting.empty()) {
+            const auto [level, node] = waiting.back();
+            waiting.pop_back();
+            if (!mayMeet(boxes_[levelStart_[level] + node])) continue;
+            if (level > 0) {
+                const std::size_t end = std::min(levelSize_[level - 1], (node + 1) * kArity);
+                for (std::size_t child = node * kArity; child < end; ++child)
+                    waiting.emplace_back(level - 1, child);
+                continue;
+            }
+            const std::size_t end = std::min(faces_.size(), (node + 1) * kLeaf);
+            for (std::size_t i = node * kLeaf; i < end; ++i)
+                if (mayMeet(faces_[i].box) && is(faces_[i])) return true;
+        }
+        return false;
+    }
 
     struct Face {
         std::uint32_t index;
@@ -132,6 +187,23 @@ class CrossingFinder {
         Vec3 normal;  ///< unit, or zero where the face has no area
         FloatBox box;
     };
+
+    [[nodiscard]] Face faceOf(const Triangle& t, std::uint32_t index) const {
+        Face face{index, {place_[t[0]], place_[t[1]], place_[t[2]]}, {}, {}};
+        const Vec3 &a = vertices_[face.corner[0]], &b = vertices_[face.corner[1]], &c = vertices_[face.corner[2]];
+        for (const Vec3* p : {&a, &b, &c})
+            face.box.extend(*p);
+        const Vec3 normal = (b - a).cross(c - a);
+        const double length = normal.norm();
+        face.normal = length > 0.0 ? (normal / length).eval() : Vec3::Zero().eval();
+        return face;
+    }
+
+    static bool isSame(const Face& a, const Face& b) {
+        return std::all_of(a.corner.begin(), a.corner.end(), [&](std::uint32_t corner) {
+            return std::find(b.corner.begin(), b.corner.end(), corner) != b.corner.end();
+        });
+    }
 
     // Every pair of leaves once: the query leaf looks only at leaves from itself onwards.
     void visit(std::size_t level, std::size_t node, std::size_t leaf, std::vector<CrossingFaces>& found) const {
@@ -222,18 +294,24 @@ class CrossingFinder {
             if (!((height[i] > 0.0 && height[j] < 0.0) || (height[i] < 0.0 && height[j] > 0.0))) continue;
             const Vec3 &p = vertices_[a.corner[i]], &q = vertices_[a.corner[j]];
             const Vec3 x = p + (q - p) * (height[i] / (height[i] - height[j]));
-            bool inside = true;
-            for (std::size_t k = 0; k < 3 && inside; ++k) {
-                const Vec3 &from = vertices_[b.corner[k]], &to = vertices_[b.corner[k == 2 ? 0 : k + 1]];
-                const Vec3 side = to - from, out = x - from;
-                const double rounding = 1e-14 * side.norm() * (out.norm() + from.cwiseAbs().maxCoeff());
-                inside = b.normal.dot(side.cross(out)) >= -rounding;
-            }
-            if (inside) common.extend(x);
+            if (holds(b, x)) common.extend(x);
         }
     }
 
-    std::vector<Vec3> vertices_;  ///< one for each place
+    // Of a point in the face's plane.
+    [[nodiscard]] bool holds(const Face& face, const Vec3& x) const {
+        bool inside = true;
+        for (std::size_t k = 0; k < 3 && inside; ++k) {
+            const Vec3 &from = vertices_[face.corner[k]], &to = vertices_[face.corner[k == 2 ? 0 : k + 1]];
+            const Vec3 side = to - from, out = x - from;
+            const double rounding = 1e-14 * side.norm() * (out.norm() + from.cwiseAbs().maxCoeff());
+            inside = face.normal.dot(side.cross(out)) >= -rounding;
+        }
+        return inside;
+    }
+
+    std::vector<std::uint32_t> place_;  ///< by vertex
+    std::vector<Vec3> vertices_;        ///< one for each place
     std::vector<Face> faces_;
     std::vector<FloatBox> boxes_;
     std::vector<std::size_t> levelStart_, levelSize_;
@@ -241,7 +319,20 @@ class CrossingFinder {
     double tolerance_ = 0.0;
 };
 
-}  // namespace
+CrossingTree::CrossingTree(const TriangleMesh& mesh) {
+    requireValidIndices(mesh, "mesh");
+    finder_ = std::make_unique<const CrossingFinder>(mesh);
+}
+CrossingTree::CrossingTree(CrossingTree&&) noexcept = default;
+CrossingTree& CrossingTree::operator=(CrossingTree&&) noexcept = default;
+CrossingTree::~CrossingTree() = default;
+
+bool CrossingTree::isCrossed(const Triangle& face) const {
+    return finder_->isCrossed(face);
+}
+bool CrossingTree::isPierced(std::uint32_t from, std::uint32_t to) const {
+    return finder_->isPierced(from, to);
+}
 
 std::vector<CrossingFaces> selfIntersections(const TriangleMesh& mesh, std::size_t limit) {
     requireValidIndices(mesh, "mesh");

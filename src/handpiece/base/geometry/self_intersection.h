@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
@@ -29,5 +30,24 @@ inline constexpr double kTouchingShare = 1e-6;
 /// Deterministic at any thread count. Throws core::Error when a triangle names a vertex that is not there.
 [[nodiscard]] std::vector<CrossingFaces> selfIntersections(const TriangleMesh& mesh,
                                                            std::size_t limit = std::numeric_limits<std::size_t>::max());
+
+/// A mesh that is asked many times whether something new would cross it, by the rules of selfIntersections(). New faces
+/// stand on the mesh's own vertices.
+class CrossingTree {
+  public:
+    /// Throws core::Error when a triangle names a vertex that is not there.
+    explicit CrossingTree(const TriangleMesh& mesh);
+    CrossingTree(CrossingTree&&) noexcept;
+    CrossingTree& operator=(CrossingTree&&) noexcept;
+    ~CrossingTree();
+
+    /// True when this face would cross one of the mesh, or lie folded onto it.
+    [[nodiscard]] bool isCrossed(const Triangle& face) const;
+    /// True when the straight line between two vertices goes through a face that has neither of them.
+    [[nodiscard]] bool isPierced(std::uint32_t from, std::uint32_t to) const;
+
+  private:
+    std::unique_ptr<const class CrossingFinder> finder_;
+};
 
 }  // namespace handpiece::geometry

@@ -14,6 +14,7 @@
 #include "handpiece/base/core/hash.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "handpiece/base/geometry/read_notes.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/case/case_files.h"
 #include "handpiece/model/case/exercise_table.h"
@@ -167,12 +168,13 @@ void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, C
         addParts(other.parts);
     }
     std::vector<std::exception_ptr> failures(names.size());
+    std::vector<geometry::ReadNotes> notes(names.size());
     core::parallelFor(names.size(), 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             if (names[i].empty()) continue;
             try {
                 *meshes[i] = geometry::readMesh(files.read(names[i], geometry::kMaxMeshBytes),
-                                                geometry::meshFormatOf(names[i]), files.where(names[i]));
+                                                geometry::meshFormatOf(names[i]), files.where(names[i]), &notes[i]);
             } catch (const core::Error&) {
                 failures[i] = std::current_exception();
             }
@@ -180,6 +182,8 @@ void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, C
     });
     for (const std::exception_ptr& failure : failures)
         if (failure) std::rethrow_exception(failure);
+    for (std::size_t i = 0; i < names.size(); ++i)
+        geometry::tellNotes(files.where(names[i]), notes[i]);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/clear_patch.h"
 #include "handpiece/base/geometry/mesh_edges.h"
 #include "handpiece/base/geometry/polygons.h"
@@ -223,13 +224,13 @@ class BaseMaker {
         };
         double around = 0.0, whole = 0.0;
         for (std::size_t i = 0; i < n; ++i) {
-            around += std::hypot(p[(i + 1) % n][0] - p[i][0], p[(i + 1) % n][1] - p[i][1]);
+            around += core::hypot(p[(i + 1) % n][0] - p[i][0], p[(i + 1) % n][1] - p[i][1]);
             whole += area(p[0], p[i], p[(i + 1) % n]);
         }
         if (whole == 0.0) return false;
         const double least = 1e-3 * around / static_cast<double>(n);
         for (std::size_t i = 0; i < n; ++i)
-            if (std::hypot(p[(i + 1) % n][0] - p[i][0], p[(i + 1) % n][1] - p[i][1]) < least) return false;
+            if (core::hypot(p[(i + 1) % n][0] - p[i][0], p[(i + 1) % n][1] - p[i][1]) < least) return false;
         for (std::size_t i = 0; i < n; ++i)
             for (std::size_t j = i + 2; j < n; ++j) {
                 if (i == 0 && j == n - 1) continue;

@@ -66,6 +66,29 @@ def ball(radius, n=12, centre=(0, 0, 0)):
     return facets
 
 
+def open_arch(rng, along=40, across=10, ragged=0.6):
+    """An open intraoral scan: a U-shaped tube of teeth, cut open below, with a ragged border in one loop."""
+    rows = []
+    for i in range(along):
+        t = math.pi * i / (along - 1)
+        out = (math.cos(t) / 25, math.sin(t) / 30)
+        length = math.hypot(*out)
+        height, low = 6 + 2.5 * abs(math.sin(7 * t)), -ragged * rng.random()
+        row = []
+        for j in range(across):
+            a = math.pi * j / (across - 1)
+            r = -5 * math.cos(a)
+            row.append((25 * math.cos(t) + out[0] / length * r, 30 * math.sin(t) + out[1] / length * r,
+                        low if j in (0, across - 1) else height * math.sin(a) ** 0.6))
+        rows.append(row)
+    facets = []
+    for i in range(along - 1):
+        for j in range(across - 1):
+            a, b, c, d = rows[i][j], rows[i][j + 1], rows[i + 1][j + 1], rows[i + 1][j]
+            facets += [(a, b, c), (a, c, d)]
+    return facets
+
+
 def rows_of(text):
     """CSV text as a list of dictionaries."""
     return list(csv.DictReader(text.splitlines()))

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: Apache-2.0
 """Whatever is wrong with the input: one clear line, exit code 1, nothing left behind."""
 
+import json
 import math
 import os
 import struct
+import subprocess
 import unittest
 
-from support import SystemTest, ball, box, poses, run, write_stl
+from support import HANDPIECE, SystemTest, ball, box, poses, run, write_stl
 
 
 class BadInput(SystemTest):
@@ -49,6 +51,84 @@ class BadInput(SystemTest):
                     self.refused(*arguments, mentions=[name, *mentions])
                 self.probe_refused(tooth=path, mentions=[name])
                 self.probe_refused(bur=path, mentions=[name])
+
+    def test_files_of_other_kinds_are_named(self):
+        text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfcaet\n"
+        for name, data, mentions in (
+                ("page.stl", b"<!DOCTYPE html><html><body>404</body></html>", ["web page", "download"]),
+                ("wide.stl", text.encode("utf-16"), ["UTF-16", "save it as"]),
+                ("packed.stl", b"PK\x03\x04" + bytes(200), ["zip archive", "unpack"]),
+                ("pointer.stl", b"version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 1\n", ["Git LFS", "pull"]),
+                ("typed.stl", (text * 2).encode(), ['no "endfacet"', '"endfcaet"', "export"]),
+                ("nothing.stl", b"", ["empty", "download"])):
+            with self.subTest(file=name):
+                path = self.file(name, data)
+                self.refused("mesh", "info", path, mentions=[name, *mentions])
+                self.probe_refused(tooth=path, mentions=[name, *mentions])
+        spelled = text.replace("endfcaet", "end facet").replace("endloop", "end loop") + "end solid\n"
+        self.assertIn("open edges", self.ok("mesh", "info", self.file("spelled.stl", spelled.encode())).stdout)
+
+    def test_what_is_left_out_is_told_once_by_every_command(self):
+        first = box((-4, -4, -8), (4, 4, 4))
+        second = write_stl(self.folder / "second.stl", box((10, 0, 0), (12, 2, 2))).read_bytes()
+        glued = self.file("glued.stl", write_stl(self.folder / "first.stl", first).read_bytes() + second)
+        case, out = self.folder / "case", self.folder / "out"
+        toml = 'format = 1\nouter = "glued.stl"\n[[part]]\nname = "all"\nfile = "glued.stl"\ntissue = "enamel"\n'
+        case.mkdir()
+        (case / "case.toml").write_text(toml)
+        (case / "glued.stl").write_bytes(glued.read_bytes())
+        for arguments in (["mesh", "info", glued], ["mesh", "info", glued, "--json"],
+                          ["mesh", "repair", glued, self.folder / "mended.stl"],
+                          ["mesh", "repair", glued, self.folder / "mended.stl", "--json"],
+                          ["case", "new", "--out", self.folder / "new", "--part", f"enamel={glued}"],
+                          ["case", "info", case, "--json"], ["case", "check", case],
+                          ["probe", "--tooth", glued, "--bur", "round-4", "--poses", self.poses, "--voxel", "400"],
+                          ["probe", "--tooth", case, "--bur", "round-4", "--poses", self.poses, "--voxel", "400"],
+                          ["run", "--tooth", glued, "--bur", "round-4", "--voxel", "400", "--motion", "drop", "--duration",
+                           "0.05", "--json", "--out", out],
+                          ["picture", glued, "--size", "64x64", "--out", self.folder / "a.png"]):
+            with self.subTest(" ".join(map(str, arguments[:2]))):
+                done = run(*arguments)
+                told = [line for line in done.stderr.splitlines() if "only the first of 2 STL files" in line]
+                self.assertEqual(len(told), 1, f"{done.stdout}\n{done.stderr}")
+                self.assertTrue(told[0].startswith("handpiece: note: "), told[0])
+                self.assertIn("glued.stl", told[0])
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(len(done.stderr.splitlines()), 1, done.stderr)
+                if "--json" in arguments:
+                    self.assertIn("{", done.stdout)
+                    json.loads(done.stdout)
+                else:
+                    self.assertNotIn("only the first", done.stdout)
+        bur = self.folder / "bur.stl"
+        self.ok("make", "bur", "--name", "round-4", "--out", bur)
+        bur.write_bytes(bur.read_bytes() + second)
+        done = self.ok("probe", "--tooth", self.tooth, "--bur", bur, "--poses", self.poses, "--voxel", "400")
+        self.assertEqual(done.stderr.count("only the first of 2 STL files"), 1, done.stderr)
+
+    def test_names_that_are_no_text_work(self):
+        folder = os.fsencode(self.folder)
+        odd = os.path.join(folder, b"M\xfcller \x80")
+        os.mkdir(odd)
+        tooth = os.path.join(odd, b"z\xe4hne.stl")
+        with open(tooth, "wb") as file:
+            file.write(self.tooth.read_bytes())
+
+        def work(*arguments):
+            done = subprocess.run([HANDPIECE, *arguments], capture_output=True, timeout=600, check=False)
+            self.assertEqual(done.returncode, 0, f"{arguments}\n{done.stdout}\n{done.stderr}")
+            return done.stdout
+
+        self.assertIn(b"a solid", work("mesh", "info", tooth))
+        json.loads(work("mesh", "info", tooth, "--json"))
+        work("mesh", "repair", tooth, os.path.join(odd, b"mended\xff.stl"))
+        work("probe", "--tooth", tooth, "--bur", "round-4", "--poses", os.fsencode(self.poses), "--voxel", "400")
+        case = os.path.join(odd, b"f\xe4lle")
+        work("case", "new", "--out", case, "--part", b"enamel=" + tooth)
+        self.assertIn(b"enamel", work("case", "info", case))
+        json.loads(work("case", "info", case, "--json"))
+        work("case", "pack", case, os.path.join(odd, b"f\xe4lle.handpiece"))
+        work("case", "check", os.path.join(odd, b"f\xe4lle.handpiece"))
 
     def test_a_missing_file(self):
         for arguments in (["mesh", "info", "gone.stl"], ["mesh", "repair", "gone.stl", "out.stl"]):

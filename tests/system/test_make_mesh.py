@@ -3,9 +3,10 @@
 
 import json
 import math
+import random
 import unittest
 
-from support import SystemTest, ball, box, write_stl
+from support import SystemTest, ball, box, open_arch, write_stl
 
 
 class MakeAndMesh(SystemTest):
@@ -138,6 +139,51 @@ class MakeAndMesh(SystemTest):
         self.assertAlmostEqual(after["volume_mm3"] / whole, 1, delta=0.05)
         # A mended mesh is felt.
         self.ok("probe", "--tooth", mended, "--bur", "round-4", "--poses", "-", stdin="0,0,9,1,0,0,0\n")
+
+    def test_an_open_arch_is_closed_or_stood_on_a_base(self):
+        rng = random.Random(20261130)
+        scan = write_stl(self.folder / "arch.stl", open_arch(rng))
+        before = self.info(scan)
+        self.assertFalse(before["closed"])
+        self.assertEqual(before["repair"], {"possible": True, "base": False, "reason": None})
+        self.assertIn("handpiece mesh repair mends it", self.ok("mesh", "info", scan).stdout)
+        volumes = []
+        for name, options in (("closed", ()), ("model", ("--base",)), ("deep", ("--base", "--base-depth", "8"))):
+            with self.subTest(name):
+                mended = self.folder / f"{name}.stl"
+                done = json.loads(self.ok("mesh", "repair", scan, mended, *options, "--json").stdout)
+                self.assertEqual(done["crossing_faces"], 0)
+                self.assertEqual(len(done["bases"]), 1 if options else 0)
+                report = self.info(mended)
+                self.expect_solid(report)
+                self.assertIsNone(report["repair"])
+                self.ok("case", "new", "--out", self.folder / f"case-{name}", "--part", f"enamel={mended}")
+                volumes.append(report["volume_mm3"])
+                # Every place of the scan is there, to the bit.
+                data = [path.read_bytes()[84:] for path in (scan, mended)]
+                given, after = ({file[at + 12 + 12 * k:at + 24 + 12 * k] for at in range(0, len(file), 50) for k in range(3)}
+                                for file in data)
+                self.assertLessEqual(given, after)
+        self.assertLess(volumes[0], volumes[1])
+        self.assertLess(volumes[1], volumes[2])
+        self.assertAlmostEqual(done["bases"][0]["depth_mm"], 8)
+        self.assertIn("base", self.ok("mesh", "repair", scan, self.folder / "again.stl", "--base").stdout)
+
+    def test_what_cannot_be_mended_is_refused_once_and_info_does_not_promise_it(self):
+        # A cup with a rod that looks out of it; two balls that overlap.
+        cup = [f for f in ball(5, 8) if sum(p[2] for p in f) > 0]
+        for name, facets, reason in (("cup", cup + box((-1, -1, -7), (1.1, 1.2, 2)), "a hole cannot be closed"),
+                                     ("balls", ball(5, 6) + ball(4, 6, (3, 0.2, 0.1)), "the surface crosses itself")):
+            with self.subTest(name):
+                path = write_stl(self.folder / f"{name}.stl", facets)
+                self.refused("mesh", "repair", path, self.folder / "out.stl", mentions=[f"{name}.stl", reason, "editor"])
+                self.assertFalse((self.folder / "out.stl").exists())
+                told = self.info(path)["repair"]
+                self.assertFalse(told["possible"])
+                self.assertIn(reason, told["reason"])
+                self.assertIn(f"handpiece mesh repair refuses it: {reason}", self.ok("mesh", "info", path).stdout)
+        self.refused("mesh", "repair", write_stl(self.folder / "box.stl", box((0, 0, 0), (6, 7, 8))),
+                     self.folder / "out.stl", "--base", mentions=["closed", "--base"])
 
     def test_a_lying_header_is_told(self):
         path = write_stl(self.folder / "box.stl", box((0, 0, 0), (6, 7, 8)))

@@ -244,6 +244,45 @@ class Scan(SystemTest):
         self.ok("scan", "case", "--job", job, "--percent", 12, "--out", self.folder / "case")
         self.assertTrue((self.folder / "case" / "case.toml").is_file())
 
+    def test_labels_of_teeth_become_a_mouth(self):
+        def written(name, labels, size, spacing):
+            header = (f"NRRD0005\ntype: uchar\ndimension: 3\nsizes: {size[0]} {size[1]} {size[2]}\nencoding: raw\n"
+                      f"spacings: {spacing} {spacing} {spacing}\n\n")
+            (self.folder / name).write_bytes(header.encode() + bytes(labels))
+            return self.folder / name
+
+        # Pegs with a crown, side by side: 84, 85, and their neighbour of three voxels.
+        size, spacing = (50, 34, 52), 0.4
+        labels = bytearray(size[0] * size[1] * size[2])
+        for k in range(size[2]):
+            up = k * spacing - 1.5
+            radius = -1 if up < 0 or up > 17 else 1 + 0.2 * up if up < 11 else 3.6 - 0.05 * (up - 14) ** 2
+            for j in range(size[1]):
+                for i in range(size[0]):
+                    for fdi, x in ((84, 5.5), (85, 14.0)):
+                        if (i * spacing - x) ** 2 + (j * spacing - 6.5) ** 2 < radius * abs(radius):
+                            labels[(k * size[1] + j) * size[0] + i] = fdi
+        for i in range(3):
+            labels[40 + i] = 83
+        teeth = written("teeth.nrrd", labels, size, spacing)
+        done = self.ok("scan", "case", teeth, "--tooth", 85, "--out", self.folder / "mouth", "--save-job",
+                       self.folder / "job.toml").stdout
+        for words in ("83 is left out: its label has 3 voxels", "tooth 84", "not grey values", "counts as enamel"):
+            self.assertIn(words, done)
+        made = (self.folder / "mouth" / "case.toml").read_text()
+        self.assertIn("fdi = 85", made)
+        self.assertIn("fdi = 84", made)
+        self.assertIn("can be felt and cut", self.ok("case", "check", self.folder / "mouth").stdout)
+        self.ok("scan", "case", "--job", self.folder / "job.toml", "--out", self.folder / "again")
+        self.assertEqual((self.folder / "again" / "outer.stl").read_bytes(),
+                         (self.folder / "mouth" / "outer.stl").read_bytes())
+        out = self.folder / "none"
+        self.refused("scan", "case", teeth, "--tooth", 46, "--out", out, mentions=["46", "84, 85"])
+        self.refused("scan", "case", teeth, "--numbers", "universal", "--out", out, mentions=["none of its labels"])
+        through = bytes(max(0, n // 40 - 20) % 33 for n in range(40 * 40 * 40))
+        counted = written("counted.nrrd", through, (40, 40, 40), 0.4)
+        self.refused("scan", "case", counted, "--labels", "--out", out, mentions=["--numbers"])
+
     def test_bad_input_is_told_in_one_line(self):
         out = self.folder / "case"
 

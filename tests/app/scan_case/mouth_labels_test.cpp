@@ -249,18 +249,16 @@ volume::Labels pegs(const Vec3& spacingMm) {
 TEST(MouthOfLabels, WhatIsOddIsTold) {
     const test::TemporaryFolder folder;
     volume::Labels labels = pegs(Vec3::Constant(0.4));
-    const auto set = [&](const Vec3& mm, std::uint8_t label) {
-        const Vec3 at = labels.grid.toVoxels(mm);
-        labels.values[labels.grid.index(static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y())),
-                                        static_cast<int>(std::lround(at.z())))] = label;
+    const auto set = [&](int i, int j, int k, std::uint8_t label) {
+        labels.values[labels.grid.index(i, j, k)] = label;
     };
-    for (const double x : {29.0, 29.4, 29.8})
-        set(Vec3(x, 2, 2), 82);  // a tooth of three voxels
+    for (int i = 72; i < 75; ++i)
+        set(i, 5, 5, 82);  // a tooth of three voxels
     for (int i = 0; i < 27; ++i)
-        set(Vec3(1.2 + 0.4 * (i % 3), 1.2 + 0.4 * (i / 3 % 3), 1.2 + 0.4 * (i / 9)), 85);  // another piece of 85
-    for (double z = 5.0; z < 21.0; z += 0.4)
-        for (double x = 26.0; x < 34.0 - 0.41; x += 0.4)
-            set(Vec3(x, 8, z), 83);  // out of the volume
+        set(3 + i % 3, 3 + i / 3 % 3, 3 + i / 9, 85);  // another piece of 85
+    for (int k = 12; k < 50; ++k)
+        for (int i = 65; i < labels.grid.size[0]; ++i)
+            set(i, 20, k, 83);  // out of the volume
     ScanJob job;
     job.source = written(labels, folder.path());
     job.isLabels = true;

@@ -10,6 +10,7 @@
 #include "handpiece/base/core/file.h"
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/scan/phantom/phantom.h"
+#include "handpiece/scan/segmentation/label_key.h"
 #include "scan/segmentation/balls.h"
 #include "support/random.h"
 
@@ -51,6 +52,38 @@ std::array<double, 5> diceOf(const Region& region, const phantom::Image& image) 
     for (std::size_t label = 1; label < 5; ++label)
         dice.at(label) = 2 * both.at(label) / (truth.at(label) + ours.at(label));
     return dice;
+}
+
+// In a jaw, where the labels of a mouth say which tooth is which: bone and touching neighbours are not its.
+TEST(PhantomTooth, ItsTissuesAreFoundWithinItsLabel) {
+    phantom::Settings s;
+    s.scanner = phantom::Scanner::cbct;
+    s.voxelUm = 250;
+    s.noise = 0.03;
+    s.scenery = true;
+    const phantom::Image image = phantom::image(incisor(), s);
+    volume::Labels labels = image.truth;
+    for (std::uint8_t& v : labels.values)
+        v = v == 0 || v == 7 ? 0 : v <= 5 ? 11 : v == 6 ? 2 : v == phantom::kNeighbourLabel ? 12 : 0;
+    const LabelKey key = labelKeyOf(labels, {}, {}, "labels");
+    const std::vector<LabelledTooth> teeth = teethOf(labels, key);
+    ASSERT_EQ(teeth.front().fdi, 11);
+    const Region region = segmentWithin(image.volume, findThresholds(image.volume), labels, key, teeth.front());
+    const std::array<double, 5> dice = diceOf(region, image);
+    EXPECT_GT(dice[2], 0.93);
+    EXPECT_GT(dice[3], 0.96);
+    EXPECT_GT(dice[4], 0.85);
+    const auto volumes = volumesMm3(region);
+    double whole = 0.0, truth = 0.0;
+    for (std::size_t t = 0; t < volumes.size(); ++t) {
+        whole += volumes.at(t);
+        truth += image.volumesMm3.at(t);
+    }
+    EXPECT_NEAR(whole, truth, 0.03 * truth);
+    for (const Tissue t : {Tissue::enamel, Tissue::dentine}) {
+        const double was = image.volumesMm3.at(static_cast<std::size_t>(t));
+        EXPECT_NEAR(volumes.at(static_cast<std::size_t>(t)), was, 0.06 * was);
+    }
 }
 
 TEST(PhantomTooth, AnIncisorAt200MicrometresMeetsItsTruth) {

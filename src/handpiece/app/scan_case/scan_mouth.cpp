@@ -29,7 +29,8 @@ std::vector<LabelledTooth> wholeTeeth(const std::vector<LabelledTooth>& all) {
     return teeth;
 }
 
-std::string listOf(const std::vector<int>& fdi) {
+std::string listOf(std::vector<int> fdi) {
+    std::sort(fdi.begin(), fdi.end());
     return fmt::format("{}", fmt::join(fdi, ", "));
 }
 
@@ -224,10 +225,10 @@ void placeMouth(ScanResult& result, const core::Progress& progress) {
             "by their numbers these teeth stand on the other side of the mouth than in the volume: it is a mirror "
             "image, or its numbers are. Look which, before it matters");
     if (!byArch.empty())
-        result.ownNotes.push_back(fmt::format(
-            "{} {} as the arch tells: the average tooth of the number does not fit into it, and the cervix was put at "
-            "three fifths of the length",
-            listOf(byArch), byArch.size() == 1 ? "stands" : "stand"));
+        result.ownNotes.push_back(
+            fmt::format("{} {} as the arch tells: no average tooth of the number fits, and the cervix was put at "
+                        "three fifths of the length",
+                        listOf(byArch), byArch.size() == 1 ? "stands" : "stand"));
     if (!guessed.empty())
         result.ownNotes.push_back(
             fmt::format("where mesial is at {} is a guess: no other tooth of its jaw is there", listOf(guessed)));

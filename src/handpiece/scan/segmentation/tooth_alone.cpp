@@ -77,10 +77,10 @@ Mask filledIn(const Shape& shape, const Mask& mask, std::size_t axis, double rat
             for (int a = 0; a < slice.size[0]; ++a) {
                 const std::size_t n = slice.index(a, b, 0);
                 float first = outlines.distance[l][n], second = outlines.distance[h][n];
-                // Where it ends, it does so about half-way to the next slice, rounded.
+                // Where it ends, it does so about half-way to the next slice, its middle farther on than its rim.
                 if (outlines.isEmpty[l] || outlines.isEmpty[h]) {
-                    first = outlines.isEmpty[l] ? end : std::max(first, -end);
-                    second = outlines.isEmpty[h] ? end : std::max(second, -end);
+                    first = outlines.isEmpty[l] ? end : std::max(first, -2.0f * end);
+                    second = outlines.isEmpty[h] ? end : std::max(second, -2.0f * end);
                 }
                 std::array<int, 3> at{};
                 at[axis] = k;

@@ -399,7 +399,7 @@ TEST_F(Formats, NiftiSwappedLeftHandedAndBroken) {
         EXPECT_THAT(error("c.nii", bytes(h) + numbers(small<std::uint16_t>())), HasSubstr("spacing")) << wrong;
     }
     h.datatype = 128;
-    EXPECT_THAT(error("c.nii", bytes(h)), HasSubstr("type 128"));
+    EXPECT_THAT(error("c.nii", bytes(h)), HasSubstr("colours"));
 }
 
 TEST_F(Formats, RawByItsDescription) {

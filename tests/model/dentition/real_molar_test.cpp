@@ -55,9 +55,10 @@ TriangleMesh surfaceOf(Filled filled, const Vec3& origin) {
 
 /// The classic industrial CT of a human molar; 0.133 mm a voxel is an estimate, so sizes are aligned, never compared.
 TriangleMesh industrialMolar(const std::filesystem::path& folder) {
-    const volume::Volume scan = volume::readScan(folder / "ge-tooth-ct" / "tooth_103x94x161_uint8.nrrd",
-                                                 {.series = {}, .spacingMm = Vec3::Constant(kSpacingMm)})
-                                    .volume;
+    volume::ReadSettings settings;
+    settings.spacingMm = Vec3::Constant(kSpacingMm);
+    const volume::Volume scan =
+        volume::readScan(folder / "ge-tooth-ct" / "tooth_103x94x161_uint8.nrrd", settings).volume;
     Filled filled;
     for (int axis = 0; axis < 3; ++axis)
         filled.size[static_cast<std::size_t>(axis)] =

@@ -72,7 +72,6 @@ void read(ScanResult& result, const core::Progress& progress) {
 void segment(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     segmentation::Region region;
-    result.fdiNumber = job.placing.fdiNumber;
     result.teeth.clear();
     result.toothNotes.clear();
     if (result.isMouth()) {
@@ -185,7 +184,8 @@ void decimate(ScanResult& result, const core::Progress& progress) {
     registration::CaseText text;
     text.name = job.name;
     text.kind = job.kind;
-    text.fdiNumber = result.fdiNumber;
+    // What was segmented stays when another number is typed; which tooth of a mouth it is was decided with it.
+    text.fdiNumber = result.isMouth() ? result.fdiNumber : job.placing.fdiNumber;
     if (result.isMouth() && text.kind.empty()) text.kind = wordsOf(result.fdiNumber).kind;
     text.tissuesToml = tissuesOf(job.tissuesFile);
     result.cases.clear();

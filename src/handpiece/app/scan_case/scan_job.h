@@ -114,7 +114,7 @@ struct ScanResult {
     // segment
     std::shared_ptr<const segmentation::Region> region;
     std::array<double, cases::kTissueCount> volumesMm3{};  ///< sub-voxel, of the region
-    int fdiNumber = 0;                                     ///< of a mouth's tooth that is worked on; else as asked
+    int fdiNumber = 0;                                     ///< of a mouth's tooth that is worked on
     std::vector<segmentation::LabelledTooth> teeth;        ///< of a mouth: all of them
     segmentation::Thresholds greyLevels{};                 ///< of the scan that its labels are of
     std::vector<std::string> toothNotes;

@@ -8,6 +8,7 @@
 #include <QSortFilterProxyModel>
 #include <QTableWidget>
 #include <fstream>
+#include <sstream>
 
 #include "desktop/features/drill/bur_list.h"
 #include "desktop/features/drill/drill_bar.h"
@@ -200,6 +201,22 @@ TEST_F(PictureTest, AnOpenSurfaceIsMendedWhenAskedAndWrittenWhereOneSays) {
     window().openFile(own_.filePath("nothing.stl"));
     ASSERT_TRUE(waitFor([this] { return window().errorDialog() != nullptr; }));
     EXPECT_FALSE(window().errorDialog()->findChild<QAbstractButton*>("errorMend"));
+}
+
+TEST_F(PictureTest, WhatWasLeftOutOfAFileIsNoticed) {
+    geometry::writeStl(at("glued.stl"), eggTooth(46).outer);
+    // A second file behind the first.
+    std::stringstream whole;
+    whole << std::ifstream(at("glued.stl"), std::ios::binary).rdbuf();
+    std::ofstream(at("glued.stl"), std::ios::binary | std::ios::app) << whole.str();
+    startWithTooth();
+    window().openFile(own_.filePath("glued.stl"));
+    auto* notices = window().findChild<NoticeBar*>();
+    ASSERT_TRUE(notices);
+    EXPECT_TRUE(waitFor([&] { return notices->current() == "file-left-out"; })) << notices->current().toStdString();
+    const QString told = window().findChild<QLabel*>("noticeText")->text();
+    EXPECT_TRUE(told.contains("glued.stl") && told.contains("first of 2 STL files")) << told.toStdString();
+    EXPECT_TRUE(waitFor([this] { return simulator().document().name == "glued" && !simulator().isBusy(); }));
 }
 
 TEST_F(PictureTest, AnOwnBurHasItsPictureAndItsName) {

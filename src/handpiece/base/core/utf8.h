@@ -13,7 +13,7 @@ namespace handpiece::core {
 [[nodiscard]] std::size_t utf8Length(std::string_view text) noexcept;
 /// Bytes until the first that is none of UTF-8; all of them where there is none.
 [[nodiscard]] std::size_t utf8Prefix(std::string_view text) noexcept;
-/// With every byte that is none of UTF-8 written out, as \xe9: names of files are bytes.
+/// With every byte that is none of UTF-8 written out (backslash, x, two digits): names of files are bytes.
 [[nodiscard]] std::string asUtf8(std::string_view text);
 
 }  // namespace handpiece::core

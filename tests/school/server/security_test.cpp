@@ -85,6 +85,7 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
         const std::string path = addressOf(route.pattern);
         for (const auto& [role, code] : who) {
             httplib::Client http(school.address());
+            http.set_read_timeout(60);
             httplib::Headers headers{{"Handpiece-Protocol", "1"}};
             httplib::Params form;
             if (*code) {
@@ -96,6 +97,7 @@ TEST_F(SecurityTest, EachRoleAtEachRouteAsTheDocsSay) {
             line += fmt::format(" {} |", inTable(route, ask(http, route, path, headers, form)));
         }
         httplib::Client http(school.address());
+        http.set_read_timeout(60);
         for (const std::string& its : {key, examKey, workerKey})
             line += fmt::format(
                 " {} |", inTable(route, ask(http, route, path,

@@ -2,7 +2,6 @@
 #include "handpiece/base/geometry/clear_patch.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "handpiece/base/geometry/mesh_edges.h"
 
@@ -63,6 +62,12 @@ bool ClearPatch::cover() {
         if (!(loop.size() <= kLargest ? leastArea(loop) : halve(loop, waiting))) return false;
     }
     return true;
+}
+
+bool ClearPatch::leastArea(const Loop& loop) {
+    return leastAreaFaces(
+        mesh_, loop, [this](auto a, auto b) { return isFree(a, b); }, [this](const Triangle& t) { return isFree(t); },
+        faces_);
 }
 
 // A vertex that stands in the loop twice can have the same edge from both of its places.
@@ -138,46 +143,6 @@ bool ClearPatch::halve(const Loop& loop, std::vector<Loop>& parts) {
         return true;
     }
     return false;
-}
-
-bool ClearPatch::leastArea(const Loop& loop) {
-    const std::size_t n = loop.size();
-    if (n < 3) return false;
-    const double kInfinity = std::numeric_limits<double>::infinity();
-    std::vector<double> best(n * n, 0.0), total(n);
-    std::vector<std::uint32_t> apex(n * n, 0);
-    for (std::size_t length = 2; length < n; ++length)
-        for (std::size_t i = 0; i + length < n; ++i) {
-            const std::size_t k = i + length;
-            best[i * n + k] = kInfinity;
-            if (length != n - 1 && !isFree(loop[i], loop[k])) continue;
-            for (std::size_t j = i + 1; j < k; ++j)
-                total[j] = best[i * n + j] + best[j * n + k] + patchCost(at(loop, i), at(loop, j), at(loop, k));
-            for (;;) {
-                const auto least = std::min_element(total.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                                                    total.begin() + static_cast<std::ptrdiff_t>(k));
-                const auto j = static_cast<std::size_t>(least - total.begin());
-                if (!(*least < kInfinity)) break;
-                if (isFree({loop[i], loop[j], loop[k]})) {
-                    best[i * n + k] = *least;
-                    apex[i * n + k] = static_cast<std::uint32_t>(j);
-                    break;
-                }
-                *least = kInfinity;
-            }
-        }
-    if (!(best[n - 1] < kInfinity)) return false;
-    std::vector<std::pair<std::size_t, std::size_t>> open{{0, n - 1}};
-    while (!open.empty()) {
-        const auto [i, k] = open.back();
-        open.pop_back();
-        if (k - i < 2) continue;
-        const std::size_t j = apex[i * n + k];
-        faces_.push_back({loop[i], loop[j], loop[k]});
-        open.emplace_back(i, j);
-        open.emplace_back(j, k);
-    }
-    return true;
 }
 
 std::optional<std::vector<Triangle>> clearBridge(const TriangleMesh& mesh, const EdgeList& taken, const Loop& one,

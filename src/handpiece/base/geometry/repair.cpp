@@ -772,8 +772,7 @@ void requireUncrossed(const RepairReport& report, const RepairSettings& settings
                       settings.base || report.holes.empty()
                           ? "trim the border where it folds under, or close it in a mesh editor"
                           : "stand its border on a base (handpiece mesh repair --base), trim it where it folds under, "
-                            "or close it in a mesh "
-                            "editor");
+                            "or close it in a mesh editor");
 }
 
 }  // namespace handpiece::geometry

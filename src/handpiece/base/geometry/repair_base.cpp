@@ -190,11 +190,7 @@ class BaseMaker {
         made.perimeterMm = perimeterMm(mesh_, loop_);
         made.depthMm = depthMm_;
         made.downMm = down;
-        for (std::size_t f = facesBefore; f < mesh_.triangles.size(); ++f) {
-            const Triangle& t = mesh_.triangles[f];
-            const Vec3& a = mesh_.vertices[t[0]];
-            made.areaMm2 += 0.5 * (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a).norm();
-        }
+        made.areaMm2 = areaMm2(mesh_, std::span<const Triangle>(mesh_.triangles).subspan(facesBefore));
         return made;
     }
 

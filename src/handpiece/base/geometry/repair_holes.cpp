@@ -95,18 +95,9 @@ class HoleCloser {
         stands.assign(loops.size(), 1);
         assemble(loops.size(), loops.size());
         for (std::size_t l = 0; l < loops.size(); ++l)
-            holes[l].areaMm2 = areaOf(patches[l]);
+            holes[l].areaMm2 = areaMm2(mesh_, patches[l]);
         for (std::size_t l = loops.size(); l-- > 0;)
             if (gone[l]) holes.erase(holes.begin() + static_cast<std::ptrdiff_t>(l));
-    }
-
-    [[nodiscard]] double areaOf(std::span<const Triangle> faces) const {
-        double areaMm2 = 0.0;
-        for (const Triangle& t : faces) {
-            const Vec3& a = mesh_.vertices[t[0]];
-            areaMm2 += 0.5 * (mesh_.vertices[t[1]] - a).cross(mesh_.vertices[t[2]] - a).norm();
-        }
-        return areaMm2;
     }
 
     ClosedHole close(const Loop& loop) {
@@ -124,7 +115,7 @@ class HoleCloser {
             for (std::size_t i = 0; i < loop.size(); ++i)
                 mesh_.triangles.push_back({loop[i], loop[(i + 1) % loop.size()], middle});
         }
-        hole.areaMm2 = areaOf(std::span<const Triangle>(mesh_.triangles).subspan(first));
+        hole.areaMm2 = areaMm2(mesh_, std::span<const Triangle>(mesh_.triangles).subspan(first));
         return hole;
     }
 
@@ -173,39 +164,9 @@ class HoleCloser {
     }
 
     bool leastArea(const Loop& loop) {
-        const std::size_t n = loop.size();
-        if (n < 3) return false;
-        const double kInfinity = std::numeric_limits<double>::infinity();
-        std::vector<double> best(n * n, 0.0);
-        std::vector<std::uint32_t> apex(n * n, 0);
-        for (std::size_t length = 2; length < n; ++length)
-            for (std::size_t i = 0; i + length < n; ++i) {
-                const std::size_t k = i + length;
-                double least = kInfinity;
-                // The side from the last vertex to the first is one of the hole's own.
-                if (length == n - 1 || !isTaken(loop[i], loop[k]))
-                    for (std::size_t j = i + 1; j < k; ++j) {
-                        const double parts = best[i * n + j] + best[j * n + k];
-                        if (parts >= least) continue;
-                        const double total = parts + patchCost(at(loop, i), at(loop, j), at(loop, k));
-                        if (total >= least) continue;
-                        least = total;
-                        apex[i * n + k] = static_cast<std::uint32_t>(j);
-                    }
-                best[i * n + k] = least;
-            }
-        if (!(best[n - 1] < kInfinity)) return false;
-        std::vector<std::pair<std::size_t, std::size_t>> open{{0, n - 1}};
-        while (!open.empty()) {
-            const auto [i, k] = open.back();
-            open.pop_back();
-            if (k - i < 2) continue;
-            const std::size_t j = apex[i * n + k];
-            mesh_.triangles.push_back({loop[i], loop[j], loop[k]});
-            open.emplace_back(i, j);
-            open.emplace_back(j, k);
-        }
-        return true;
+        return leastAreaFaces(
+            mesh_, loop, [this](auto a, auto b) { return !isTaken(a, b); }, [](const Triangle&) { return true; },
+            mesh_.triangles);
     }
 
     TriangleMesh& mesh_;
@@ -243,6 +204,15 @@ double perimeterMm(const TriangleMesh& mesh, const Loop& loop) {
     for (std::size_t i = 0; i < loop.size(); ++i)
         length += (mesh.vertices[loop[i]] - mesh.vertices[loop[(i + 1) % loop.size()]]).norm();
     return length;
+}
+
+double areaMm2(const TriangleMesh& mesh, std::span<const Triangle> faces) {
+    double area = 0.0;
+    for (const Triangle& t : faces) {
+        const Vec3& a = mesh.vertices[t[0]];
+        area += 0.5 * (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).norm();
+    }
+    return area;
 }
 
 std::vector<ClosedHole> closeHoles(TriangleMesh& mesh) {

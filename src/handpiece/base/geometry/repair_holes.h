@@ -4,6 +4,7 @@
 /// Closes the holes of a mesh whose vertices are manifold. Only repair*.cpp include it.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "handpiece/base/geometry/repair.h"
@@ -19,6 +20,8 @@ std::vector<ClosedHole> closeHoles(TriangleMesh& mesh);
 /// The loops of open edges, vertices in the order in which new faces run along them, by their lowest vertex. Vertices
 /// must be manifold as for closeHoles().
 [[nodiscard]] std::vector<std::vector<std::uint32_t>> openLoops(const TriangleMesh& mesh);
+/// Of faces that stand on the mesh's vertices.
+[[nodiscard]] double areaMm2(const TriangleMesh& mesh, std::span<const Triangle> faces);
 [[nodiscard]] double perimeterMm(const TriangleMesh& mesh, const std::vector<std::uint32_t>& loop);
 
 }  // namespace handpiece::geometry

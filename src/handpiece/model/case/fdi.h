@@ -22,10 +22,16 @@ namespace handpiece::cases {
 [[nodiscard]] constexpr bool isPermanentTooth(int fdi) noexcept {
     return fdi >= 11 && fdi <= 48 && fdi % 10 >= 1 && fdi % 10 <= 8;
 }
+[[nodiscard]] constexpr bool isDeciduousTooth(int fdi) noexcept {
+    return fdi >= 51 && fdi <= 85 && fdi % 10 >= 1 && fdi % 10 <= 5;
+}
+/// From the patient's right to the left: 18 to 11 are -8 to -1, 21 to 28 are 0 to 7.
+[[nodiscard]] constexpr int placeAlongArch(int fdi) noexcept {
+    return isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1;
+}
 /// Beside each other in one arch, both permanent or both deciduous; the central incisors are.
 [[nodiscard]] constexpr bool areAdjacentTeeth(int a, int b) noexcept {
-    const auto alongArch = [](int fdi) { return isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1; };
-    const int apart = alongArch(a) - alongArch(b);
+    const int apart = placeAlongArch(a) - placeAlongArch(b);
     return a != 0 && b != 0 && isLowerTooth(a) == isLowerTooth(b) && (a < 50) == (b < 50) &&
            (apart == 1 || apart == -1);
 }

@@ -2,6 +2,7 @@
 #include "handpiece/scan/registration/make_case.h"
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/fdi.h"
 
 namespace handpiece::registration {
 namespace {
@@ -15,10 +16,7 @@ int buccalSignOf(int fdi) {
 }  // namespace
 
 void requireFdi(int fdi) {
-    const int quadrant = fdi / 10, place = fdi % 10;
-    const bool isPermanent = quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8;
-    const bool isMilk = quadrant >= 5 && quadrant <= 8 && place >= 1 && place <= 5;
-    if (fdi != 0 && !isPermanent && !isMilk)
+    if (fdi != 0 && !cases::isPermanentTooth(fdi) && !cases::isDeciduousTooth(fdi))
         throw core::Error("there is no tooth of this FDI number", std::to_string(fdi), "give 11 to 48 or 51 to 85");
 }
 

@@ -43,11 +43,6 @@ Looked look(const ToothOfArch& tooth) {
     return l;
 }
 
-/// Along the arch from the patient's right to the left: 18 to 11 are -8 to -1, 21 to 28 are 0 to 7.
-int alongArch(int fdi) {
-    return cases::isRightTooth(fdi) ? -(fdi % 10) : fdi % 10 - 1;
-}
-
 Vec3 across(const Vec3& v, const Vec3& to) {
     return v - v.dot(to) * to;
 }
@@ -93,13 +88,13 @@ void findCrown(Looked& l, const Vec3& occlusal) {
 
 /// Towards the midline along the arch; zero where no other tooth of the jaw stands.
 Vec3 mesialOf(const Looked& own, const std::vector<Looked*>& jaw) {
-    const int at = alongArch(own.fdi), midline = cases::isRightTooth(own.fdi) ? 1 : -1;
+    const int at = cases::placeAlongArch(own.fdi), midline = cases::isRightTooth(own.fdi) ? 1 : -1;
     const auto nearest = [&](int way) {
         const Looked* found = nullptr;
         for (const Looked* l : jaw) {
-            const int off = way * (alongArch(l->fdi) - at);
+            const int off = way * (cases::placeAlongArch(l->fdi) - at);
             if (off <= 0) continue;
-            if (!found || off < way * (alongArch(found->fdi) - at)) found = l;
+            if (!found || off < way * (cases::placeAlongArch(found->fdi) - at)) found = l;
         }
         return found;
     };

@@ -20,9 +20,7 @@ constexpr double kSmallestToothMm3 = 40.0, kLargestToothMm3 = 2500.0;
 constexpr std::uint8_t kPulp = 4;
 
 bool isFdi(int n) {
-    const int quadrant = n / 10, place = n % 10;
-    return (quadrant >= 1 && quadrant <= 4 && place >= 1 && place <= 8) ||
-           (quadrant >= 5 && quadrant <= 8 && place >= 1 && place <= 5);
+    return cases::isPermanentTooth(n) || cases::isDeciduousTooth(n);
 }
 
 /// What ToothFairy 2 and 3 have beside the teeth.

@@ -68,7 +68,8 @@ TEST(PhantomTooth, ItsTissuesAreFoundWithinItsLabel) {
     const LabelKey key = labelKeyOf(labels, {}, {}, "labels");
     const std::vector<LabelledTooth> teeth = teethOf(labels, key);
     ASSERT_EQ(teeth.front().fdi, 11);
-    const Region region = segmentWithin(image.volume, findThresholds(image.volume), labels, key, teeth.front());
+    const Region region =
+        segmentWithin(image.volume, findThresholds(image.volume), labels, key, alone(labels, key, teeth.front()));
     const std::array<double, 5> dice = diceOf(region, image);
     EXPECT_GT(dice[2], 0.93);
     EXPECT_GT(dice[3], 0.96);

@@ -61,16 +61,10 @@ LabelledTooth mostSuited(const std::vector<LabelledTooth>& teeth) {
 
 /// The tooth whose label lies at a place; 0: none does.
 int fdiAt(const ScanResult& result, const Vec3& mm) {
-    const volume::Grid& grid = result.labels->grid;
-    const Vec3 at = grid.toVoxels(mm);
-    std::array<int, 3> ijk{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const double v = std::floor(at[static_cast<int>(a)] + 0.5);
-        if (!(v >= 0.0 && v < grid.size[a])) return 0;
-        ijk[a] = static_cast<int>(v);
-    }
+    const auto at = result.labels->grid.indexAt(mm);
+    if (!at) return 0;
     using What = segmentation::LabelMeaning::What;
-    const auto& meaning = result.labelKey->of[result.labels->values[grid.index(ijk[0], ijk[1], ijk[2])]];
+    const auto& meaning = result.labelKey->of[result.labels->values[*at]];
     return meaning.what == What::tooth || meaning.what == What::pulp ? meaning.number : 0;
 }
 
@@ -108,7 +102,7 @@ segmentation::Region regionOf(const ScanResult& result, const LabelledTooth& too
         notes.push_back(fmt::format("{} is in {} pieces: the largest is kept, {:.1f} mm3 are left out", tooth.fdi,
                                     alone.pieces, alone.leftOutMm3));
     if (!result.grey) return segmentation::segmentLabels(alone.labels, settings, progress);
-    return segmentation::segmentWithin(result.grey->volume, result.greyLevels, *result.labels, *result.labelKey, tooth,
+    return segmentation::segmentWithin(result.grey->volume, result.greyLevels, *result.labels, *result.labelKey, alone,
                                        settings, progress);
 }
 
@@ -128,7 +122,6 @@ ToothWords wordsOf(int fdi) {
 
 segmentation::Region segmentMouth(ScanResult& result, const core::Progress& progress) {
     result.teeth = segmentation::teethOf(*result.labels, *result.labelKey);
-    result.toothNotes.clear();
     const std::vector<LabelledTooth> teeth = wholeTeeth(result.teeth);
     if (teeth.empty())
         throw core::Error("no label of a tooth has more than a speck", "labels", "look at the labels: they hold none")

@@ -221,9 +221,9 @@ void evenOut(std::vector<float>& values, const std::array<std::uint32_t, 3>& nod
     }
 }
 
-/// What of a mouth's labels is of these meanings, within a box of the scanner's axes.
+/// What of a mouth's labels has this meaning, within a box of the scanner's axes.
 std::vector<geometry::TriangleMesh> thingOf(const volume::Labels& labels, const segmentation::LabelKey& key,
-                                            const std::array<bool, 16>& isIt, bool isApart, const core::Box& box,
+                                            segmentation::LabelMeaning::What which, bool isApart, const core::Box& box,
                                             const core::Progress& progress) {
     using What = segmentation::LabelMeaning::What;
     geometry::ScalarGrid grid;
@@ -243,7 +243,7 @@ std::vector<geometry::TriangleMesh> thingOf(const volume::Labels& labels, const 
                 const Vec3 p = grid.originMm + grid.spacingMm * Vec3(static_cast<double>(ij % grid.nodes[0]),
                                                                      static_cast<double>(ij / grid.nodes[0]),
                                                                      static_cast<double>(k));
-                thing[k * slice + ij] = share(p, [&](What what) { return isIt[static_cast<std::size_t>(what)]; });
+                thing[k * slice + ij] = share(p, [&](What what) { return what == which; });
                 if (isApart)
                     teeth[k * slice + ij] =
                         share(p, [&](What what) { return what == What::tooth || what == What::pulp; });
@@ -258,7 +258,7 @@ std::vector<geometry::TriangleMesh> thingOf(const volume::Labels& labels, const 
         thing[n] = scale * (0.5f - thing[n]);
         if (isApart) thing[n] = std::max(thing[n], scale * (teeth[n] - kLeastTooth));
     }
-    grid.values = thing;
+    grid.values = std::move(thing);
     return piecesOf(geometry::isosurface(grid, core::part(progress, 0.8, 1.0)));
 }
 
@@ -302,10 +302,8 @@ std::vector<cases::Part> jawsOf(const volume::Labels& labels, const segmentation
                         : kind.what == What::lowerBone ? teethOfJaws[1]
                                                        : both;
         if (!any || box.isEmpty()) continue;
-        std::array<bool, 16> isIt{};
-        isIt[static_cast<std::size_t>(kind.what)] = true;
         std::vector<geometry::TriangleMesh> pieces =
-            thingOf(labels, key, isIt, kind.isApart, box.grown(reachMm),
+            thingOf(labels, key, kind.what, kind.isApart, box.grown(reachMm),
                     core::part(progress, static_cast<double>(i) / 4.0, static_cast<double>(i + 1) / 4.0));
         for (std::size_t p = 0; p < pieces.size(); ++p) {
             cases::Part part{fmt::format("{} {}", kind.name, p + 1), kind.tissue, kind.priority, std::move(pieces[p])};

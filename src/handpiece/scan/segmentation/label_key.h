@@ -62,6 +62,7 @@ inline constexpr std::size_t kLeastToothVoxels = 60;
 
 /// The tissue numbers of one tooth, for segmentLabels(): 2 its hard tissues as one, 4 its pulp. The largest piece.
 struct ToothAlone {
+    int fdi = 0;
     volume::Labels labels;    ///< around it; slices that lie far apart are filled in between
     std::size_t pieces = 1;   ///< that there were
     double leftOutMm3 = 0.0;  ///< of the smaller ones
@@ -73,7 +74,7 @@ struct ToothAlone {
 /// label: where it ends and what it touches the label says, and grey values only move that surface by a part of a
 /// voxel. The two need the same frame, not the same grid. `levels`: as findThresholds() gives for the scan.
 [[nodiscard]] Region segmentWithin(const volume::Volume& scan, const Thresholds& levels, const volume::Labels& labels,
-                                   const LabelKey& key, const LabelledTooth& tooth, const Settings& settings = {},
+                                   const LabelKey& key, const ToothAlone& own, const Settings& settings = {},
                                    const core::Progress& progress = {});
 
 }  // namespace handpiece::segmentation

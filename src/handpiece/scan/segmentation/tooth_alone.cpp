@@ -97,6 +97,7 @@ Mask filledIn(const Shape& shape, const Mask& mask, std::size_t axis, double rat
 ToothAlone alone(const volume::Labels& labels, const LabelKey& key, const LabelledTooth& tooth) {
     const volume::Grid& grid = labels.grid;
     ToothAlone made;
+    made.fdi = tooth.fdi;
     volume::Grid& own = made.labels.grid;
     own = grid;
     // A layer of nothing around it: where the tooth ends, its slices do.

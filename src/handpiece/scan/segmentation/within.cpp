@@ -16,24 +16,11 @@ using What = LabelMeaning::What;
 constexpr double kFinestMm = 0.03;
 constexpr int kBesideVoxels = 2;  ///< so far from another tooth the label alone says where this one ends
 
-/// The voxel of a grid that a place lies in; none outside of it.
-std::optional<std::size_t> voxelAt(const volume::Grid& grid, const Vec3& mm) {
-    const Vec3 at = grid.toVoxels(mm);
-    std::array<int, 3> ijk{};
-    for (std::size_t a = 0; a < 3; ++a) {
-        const double v = std::floor(at[static_cast<int>(a)] + 0.5);
-        if (!(v >= 0.0 && v < grid.size[a])) return std::nullopt;
-        ijk[a] = static_cast<int>(v);
-    }
-    return grid.index(ijk[0], ijk[1], ijk[2]);
-}
-
 }  // namespace
 
 Region segmentWithin(const volume::Volume& scan, const Thresholds& levels, const volume::Labels& labels,
-                     const LabelKey& key, const LabelledTooth& tooth, const Settings& settings,
+                     const LabelKey& key, const ToothAlone& own, const Settings& settings,
                      const core::Progress& progress) {
-    const ToothAlone own = alone(labels, key, tooth);
     Work work;
     work.levels = settings.thresholds.value_or(levels);
     // The box of its label, in the scan's voxels.
@@ -61,11 +48,11 @@ Region segmentWithin(const volume::Volume& scan, const Thresholds& levels, const
         for (int i = 0; i < shape.size[0]; ++i) {
             const Vec3 mm = work.grid.toMm(Vec3(i, j, k));
             const std::size_t n = shape.index(i, j, k);
-            if (const auto at = voxelAt(inner, mm)) solid[n] = own.labels.values[*at] != 0;
-            if (const auto at = voxelAt(labels.grid, mm)) {
+            if (const auto at = inner.indexAt(mm)) solid[n] = own.labels.values[*at] != 0;
+            if (const auto at = labels.grid.indexAt(mm)) {
                 const LabelMeaning& meaning = key.of[labels.values[*at]];
                 other[n] = meaning.what == What::prosthesis ||
-                           ((meaning.what == What::tooth || meaning.what == What::pulp) && meaning.number != tooth.fdi);
+                           ((meaning.what == What::tooth || meaning.what == What::pulp) && meaning.number != own.fdi);
             }
         }
     });

@@ -119,6 +119,11 @@ std::string shrinkingText(const std::array<int, 3>& size, int by, std::uint64_t 
                        tooLargeText(size, limitBytes), by == 2 ? "half" : "a quarter");
 }
 
+/// From one slice to the next, where `stepMm` tells no other way than along the normal.
+core::Vec3 stepOf(const Grid& grid, const core::Vec3& stepMm) {
+    return stepMm.isZero() ? core::Vec3(grid.axes.col(2) * grid.spacingMm.z()) : stepMm;
+}
+
 /// What is read of a scan: whole slices are passed through, these voxels kept, `by` of them made one along each axis.
 struct Window {
     std::array<int, 3> first{}, count{};
@@ -132,7 +137,7 @@ Window windowOf(const Grid& grid, const core::Vec3& stepMm, const std::array<cor
     for (const core::Vec3& corner : regionMm)
         if (!corner.allFinite())
             throw core::Error("a region's corner is no number", "region", "give millimetres of the scan's frame");
-    const core::Vec3 step = stepMm.isZero() ? core::Vec3(grid.axes.col(2) * grid.spacingMm.z()) : stepMm;
+    const core::Vec3 step = stepOf(grid, stepMm);
     core::Mat3 toMm;
     toMm << grid.axes.col(0) * grid.spacingMm.x(), grid.axes.col(1) * grid.spacingMm.y(), step;
     const core::Mat3 toVoxels = toMm.inverse();
@@ -259,8 +264,7 @@ void makeRightHanded(Volume& volume, core::Vec3& stepMm) {
     Grid& grid = volume.grid;
     if (grid.axes.determinant() > 0.0) return;
     reverseSlices(volume);
-    const core::Vec3 step = stepMm.isZero() ? core::Vec3(grid.axes.col(2) * grid.spacingMm[2]) : stepMm;
-    grid.originMm += step * (grid.size[2] - 1);
+    grid.originMm += stepOf(grid, stepMm) * (grid.size[2] - 1);
     grid.axes.col(2) *= -1.0;
     stepMm *= -1.0;
 }

@@ -226,8 +226,6 @@ void scale(float* values, std::size_t count, const std::pair<double, double>& by
         values[i] = static_cast<float>(by.first * static_cast<double>(values[i]) + by.second);
 }
 
-constexpr const char* kNoSide = "pictures do not tell from which end they are numbered";
-
 /// A stack in one file.
 Candidate pagesOf(const Files& files, std::size_t file, const PictureInfo& info) {
     Candidate c;
@@ -400,7 +398,7 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
         c.grid.size = {info.columns, info.rows, static_cast<int>(slices.size())};
         c.series.bits = info.bits;
         c.spacingProblem = "pictures do not tell it";
-        c.sideProblem = kNoSide;
+        c.sideProblem = "pictures do not tell from which end they are numbered";
         if (std::any_of(infos.begin(), infos.end(), [](const PictureInfo& i) { return i.isColour; }))
             c.series.notes.push_back("colour pictures were turned to grey");
         const std::pair<double, double> by = describeBeside(*files, firstName, c);

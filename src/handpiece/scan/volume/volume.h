@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "handpiece/base/core/vec.h"
@@ -34,6 +35,13 @@ struct Grid {
     [[nodiscard]] core::Vec3 toMm(const core::Vec3& ijk) const { return originMm + axes * ijk.cwiseProduct(spacingMm); }
     [[nodiscard]] core::Vec3 toVoxels(const core::Vec3& mm) const {
         return (axes.transpose() * (mm - originMm)).cwiseQuotient(spacingMm);
+    }
+    /// Of the voxel that a place [mm] lies in; none outside of it.
+    [[nodiscard]] std::optional<std::size_t> indexAt(const core::Vec3& mm) const {
+        const core::Vec3 at = (toVoxels(mm).array() + 0.5).floor();
+        for (int a = 0; a < 3; ++a)
+            if (!(at[a] >= 0.0 && at[a] < size[static_cast<std::size_t>(a)])) return std::nullopt;
+        return index(static_cast<int>(at[0]), static_cast<int>(at[1]), static_cast<int>(at[2]));
     }
     [[nodiscard]] double voxelMm3() const { return spacingMm.prod(); }
 };

@@ -22,6 +22,7 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "handpiece/model/instrument/turbine.h"
 #include "handpiece/model/tooth/state_file.h"
+#include "handpiece/senses/view/occlusal.h"
 #include "handpiece/senses/view/renderer.h"
 #include "studies/built_in_motion.h"
 #include "studies/progress_bar.h"
@@ -175,7 +176,7 @@ Asked read(const PictureOptions& o) {
 /// All that is to be seen, whatever it came from.
 struct Subject {
     core::Box bounds;
-    int buccalSign = 0;
+    view::Standing standing;
     std::shared_ptr<simulation::LiveTooth> live;  ///< null: a mesh alone
     std::optional<geometry::TriangleMesh> mesh;   ///< that one
     std::vector<cases::Part> scenery, parts;
@@ -187,7 +188,7 @@ struct Subject {
 };
 
 void takeCase(Subject& subject, const cases::Case& toothCase, int hour) {
-    subject.buccalSign = toothCase.buccalSign;
+    subject.standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
     subject.bounds = subject.live->model().outer.bounds();
@@ -314,7 +315,7 @@ view::MirrorPose mirrorFor(const Subject& subject, const view::Camera& camera) {
     level = level.norm() > 1e-6 ? Vec3(level.normalized()) : Vec3(Vec3::UnitY());
     view::MirrorPose pose;
     if (fromAbove) {
-        const Vec3 lingual(0.0, subject.buccalSign < 0 ? 1.0 : -1.0, 0.0);
+        const Vec3 lingual(0.0, subject.standing.buccalSign < 0 ? 1.0 : -1.0, 0.0);
         pose.centreMm = crown + (0.5 * size.y() + 9.0) * lingual;
     } else {
         pose.centreMm = crown + Vec3(0.0, 0.0, 12.0) + (0.5 * size.y() + 3.0) * level;
@@ -327,17 +328,18 @@ view::MirrorPose mirrorFor(const Subject& subject, const view::Camera& camera) {
 
 view::Camera cameraFor(const Asked& asked, const Subject& subject, const view::Viewport& each, bool withMirror,
                        std::optional<view::MirrorPose>& mirror) {
-    view::Camera camera = view::standardView(asked.view, subject.bounds, subject.buccalSign, each);
+    view::Camera camera = view::standardView(asked.view, subject.bounds, subject.standing, each);
     if (subject.position) camera = input::seenFrom(*subject.position, subject.bounds, each);
     if (asked.eyeMm) {
         camera.eyeMm = *asked.eyeMm;
         camera.targetMm = asked.targetMm.value_or(subject.bounds.centre());
-        camera.up = Vec3::UnitZ();
+        camera.up = subject.standing.up();
     }
     if (!(camera.distanceMm() > 1e-3))
         throw core::Error("the eye is where it looks at", "--eye", "give two different points");
-    // Straight up or down with z for up there would be no right.
-    if (std::abs(camera.up.dot(camera.forward())) > 0.999) camera.up = {0.0, subject.buccalSign < 0 ? -1.0 : 1.0, 0.0};
+    // Straight up or down with z for up there would be no right: towards the crown as the occlusal view is.
+    if (std::abs(camera.up.dot(camera.forward())) > 0.999)
+        camera.up = (camera.forward().z() < 0.0 ? 1.0 : -1.0) * view::occlusalUp(subject.standing);
     if (withMirror) {
         mirror = mirrorFor(subject, camera);
         if (!asked.eyeMm) {
@@ -386,7 +388,7 @@ void picture(const PictureOptions& o) {
             return probe.section(look.cutAway->normal, look.cutAway->offsetMm, kSectionPixelMm);
         });
         renderer.setSectionFace({*look.cutAway, section.originMm, section.uAxis, section.vAxis, section.mmPerPixel,
-                                 section.width, section.height, section.tissue});
+                                 section.width, section.height, section.tissue, section.away});
     }
     view::Image image;
     constexpr int kMaxDrawings = 5;  // until it no longer gets finer

@@ -34,6 +34,7 @@ view::SectionFace faceOf(const measure::Section& section, const view::Plane& pla
     face.width = section.width;
     face.height = section.height;
     face.tissue = section.tissue;
+    face.away = section.away;
     return face;
 }
 

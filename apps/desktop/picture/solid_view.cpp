@@ -249,9 +249,9 @@ void SolidView::setTissueShown(cases::Tissue tissue, bool shown) {
     wish();
 }
 
-void SolidView::lookFrom(view::StandardView from, int buccalSign) {
+void SolidView::lookFrom(view::StandardView from, const view::Standing& standing) {
     if (bounds_.isEmpty()) return;
-    camera_ = view::standardView(from, bounds_, buccalSign, {std::max(1, width()), std::max(1, height())});
+    camera_ = view::standardView(from, bounds_, standing, {std::max(1, width()), std::max(1, height())});
     placed_ = true;
     wish();
 }

@@ -46,7 +46,7 @@ class SolidView : public QWidget {
     void setAxesShown(bool shown, int buccalSign);
     /// As the buttons below the picture do, one a tissue that there is [NAME_enamel, ...].
     void setTissueShown(cases::Tissue tissue, bool shown);
-    void lookFrom(view::StandardView from, int buccalSign = 0);
+    void lookFrom(view::StandardView from, const view::Standing& standing = {});
     void setCamera(const view::Camera& camera);
     /// Over the parts; none: away with it.
     void setGlass(std::vector<view::GlassSurface> surfaces);

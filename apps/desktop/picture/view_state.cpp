@@ -241,7 +241,7 @@ void ViewWidget::State::take(const cases::Case& toothCase, const core::Box& of) 
     const bool inGum = std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(),
                                    [](const cases::Part& part) { return part.tissue == cases::Tissue::gum; });
     if (inGum) eyeBounds.min.z() = bounds.max.z() - kCrownShare * bounds.size().z();
-    buccalSign = toothCase.buccalSign;
+    standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
 }
 
 void ViewWidget::State::layOut() {

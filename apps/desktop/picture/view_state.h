@@ -30,7 +30,7 @@ struct ViewWidget::State {
     std::shared_ptr<simulation::LiveTooth> tooth;
     core::Box bounds{core::Vec3::Zero(), core::Vec3::Zero()};     // of the tooth
     core::Box eyeBounds{core::Vec3::Zero(), core::Vec3::Zero()};  // of what of it is to be looked at
-    int buccalSign = 1;
+    view::Standing standing{1};
     std::vector<cases::Tissue> tissues;
     std::shared_ptr<const instrument::Bur> bur;
     std::unique_ptr<input::PointerController> hand;

@@ -108,7 +108,7 @@ void ViewWidget::State::faceSection(SectionPlace& place) {
     const core::Vec3 along = (towards - normal * towards.dot(normal)).normalized();
     const double distanceMm = camera.distanceMm();
     camera.eyeMm = camera.targetMm + distanceMm * (kTurned * normal + std::sqrt(1.0 - kTurned * kTurned) * along);
-    camera.up = core::Vec3::UnitZ();
+    camera.up = standing.up();
     facingSection = camera;
     eyeMoved();
 }
@@ -135,7 +135,9 @@ void ViewWidget::setMirrorShown(bool shown) {
     if (shown) {
         // Over the tooth's far side in the picture, where the handpiece is not: there it shows what one cannot see.
         const view::Viewport port = s.viewport();
-        const view::Ray ray = view::rayThrough(s.camera, port, {kMirrorAcross * port.width, kMirrorDown * port.height});
+        const bool hangs = s.camera.upward().z() < -0.1;  // the crown: what one cannot see of it is below
+        const double down = hangs ? 1.0 - kMirrorDown : kMirrorDown;
+        const view::Ray ray = view::rayThrough(s.camera, port, {kMirrorAcross * port.width, down * port.height});
         const core::Vec3 forward = s.camera.forward(), centre = s.eyeBounds.centre();
         const double behind = 0.25 * s.eyeBounds.size().dot(forward.cwiseAbs());
         const double depth = forward.dot(centre - s.camera.eyeMm) + behind;

@@ -65,6 +65,13 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     s.layOut();
 }
 
+void ViewWidget::setStanding(const view::Standing& standing) {
+    state_->standing = standing;
+}
+const view::Standing& ViewWidget::standing() const {
+    return state_->standing;
+}
+
 void ViewWidget::showSketch(const cases::Case& sketch) {
     State& s = *state_;
     if (!s.isSketch) s.movedEye.reset();  // of another tooth
@@ -207,7 +214,7 @@ const view::Camera& ViewWidget::camera() const {
 
 void ViewWidget::showStandardView(view::StandardView standardView) {
     const view::Viewport port = state_->viewport();
-    setCamera(clearOfWriting(view::standardView(standardView, state_->eyeBounds, state_->buccalSign, port), port));
+    setCamera(clearOfWriting(view::standardView(standardView, state_->eyeBounds, state_->standing, port), port));
     if (state_->hand) state_->hand->faceEye();
 }
 

@@ -47,6 +47,10 @@ class ViewWidget : public QWidget {
     /// in a replay, where setSample() says where the bur is. Takes pointer and measurements away, fits the camera.
     void setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
                   std::shared_ptr<simulation::SampleFeed> feed);
+    /// Until another tooth, instead of how it stands in the mouth: in an arm's reach crowns are up, and what the hand
+    /// does is to be seen the same way round.
+    void setStanding(const view::Standing& standing);
+    [[nodiscard]] const view::Standing& standing() const;
     /// Something to look at and to turn until the tooth is there. An eye that was moved stays where it is, also for the
     /// tooth itself.
     void showSketch(const cases::Case& sketch);

@@ -9,7 +9,7 @@ import { chunkCounts, chunksOf, meshOf } from "./surface.js";
 /**
  * @typedef {[number, number, number]} Vec3
  * @typedef {import("./review.js").Review} Review
- * @typedef {{targetMm: Vec3, yawDeg: number, pitchDeg: number, distanceMm: number}} Camera yaw about the tooth's axis, 0 from mesial
+ * @typedef {{targetMm: Vec3, yawDeg: number, pitchDeg: number, distanceMm: number, isHanging?: boolean}} Camera yaw about the tooth's axis, 0 from mesial; hanging: the crown is down
  * @typedef {{normal: Vec3, offsetMm: number}} Plane what lies beyond it is cut off
  * @typedef {{camera: Camera, plane: Plane | null, deviation: boolean, bur: boolean, around: "shown" | "faint" | "hidden", timeS: number}} Look
  */
@@ -141,8 +141,9 @@ export function axesOf(camera) {
     const yaw = (camera.yawDeg * Math.PI) / 180, pitch = (camera.pitchDeg * Math.PI) / 180;
     /** @type {Vec3} */
     const back = [Math.cos(pitch) * Math.cos(yaw), Math.cos(pitch) * Math.sin(yaw), Math.sin(pitch)];
+    const side = camera.isHanging ? -1 : 1;
     /** @type {Vec3} */
-    const right = [-Math.sin(yaw), Math.cos(yaw), 0];
+    const right = [-side * Math.sin(yaw), side * Math.cos(yaw), 0];
     /** @type {Vec3} */
     const [x, y, z] = camera.targetMm, far = camera.distanceMm;
     /** @type {Vec3} */

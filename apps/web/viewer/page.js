@@ -146,7 +146,8 @@ export class ReviewPage {
         /** @type {Record<string, [number, number]>} */
         const views = { oblique: [56 * b, 41], occlusal: [90 * b, 89.9], buccal: [90 * b, 0], lingual: [-90 * b, 0], mesial: [0, 0], distal: [180, 0] };
         const [yawDeg, pitchDeg] = views[name];
-        return { targetMm, yawDeg, pitchDeg, distanceMm: Math.max(wide, crown) * 2.9 };
+        // An upper tooth hangs, as who sits before the patient sees it.
+        return { targetMm, yawDeg, pitchDeg, distanceMm: Math.max(wide, crown) * 2.9, isHanging: this.review.text.isUpper ?? false };
     }
 
     /**
@@ -378,6 +379,7 @@ export class ReviewPage {
         const { yawDeg, pitchDeg } = this.whence_(this.review.nearestPose(place));
         const isSteep = pitchDeg > 90 - 2 * kBesideDeg;
         this.camera = {
+            ...this.camera,
             targetMm: /** @type {Vec3} */ ([...place]),
             distanceMm: this.standard("oblique").distanceMm * 0.6,
             yawDeg: isSteep ? this.camera.yawDeg : yawDeg + kBesideDeg,
@@ -460,8 +462,9 @@ export class ReviewPage {
 
     /** @param {number} yawDeg @param {number} pitchDeg */
     turn(yawDeg, pitchDeg) {
-        this.camera.yawDeg += yawDeg;
-        this.camera.pitchDeg = within(this.camera.pitchDeg + pitchDeg, -89.9, 89.9);
+        const way = this.camera.isHanging ? -1 : 1;
+        this.camera.yawDeg += way * yawDeg;
+        this.camera.pitchDeg = within(this.camera.pitchDeg + way * pitchDeg, -89.9, 89.9);
         this.ask();
     }
     /** @param {number} dx of the picture's points @param {number} dy */

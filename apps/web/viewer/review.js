@@ -18,6 +18,7 @@
  * @property {Record<string, string>} words
  * @property {number} durationS
  * @property {number} buccalSign
+ * @property {boolean} [isUpper]
  * @property {string[]} notes what is not as it was
  * @property {{originMm: Vec3, voxelMm: number, nodes: Vec3, bricks: Vec3, brickEdge: number, stepsAVoxel: number}} grid
  * @property {Tissue[]} tissues

@@ -158,6 +158,8 @@ TEST(Outlines, LieWhereTheSurfacesLie) {
         EXPECT_NEAR(std::hypot(x, z), 3.5, 0.002);
     }
     EXPECT_GT(count, 200u);
+    // A circle is one line, so that dashes run along it and do not begin anew in every cell.
+    EXPECT_EQ(std::count(path.begin(), path.end(), 'M'), 1);
 }
 
 }  // namespace

@@ -319,6 +319,35 @@ TEST_F(Bored, aSectionShowsTheTissuesInTheirPlaces) {
     EXPECT_GT(probe.section(Vec3::UnitX(), 0).vAxis.z(), 0.99);
 }
 
+TEST_F(Bored, aSectionTellsWhereBetweenItsPixelsTissuesMeet) {
+    const ToothProbe probe(*mirror_);
+    const double mm = 0.05;
+    for (const Vec3& normal : {Vec3(1, 0, 0), Vec3(1, 2, -0.5)}) {
+        const Section s = probe.section(normal, 0.2 * normal.norm(), mm);
+        ASSERT_EQ(s.away.size(), s.tissue.size());
+        std::size_t met = 0, far = 0;
+        for (int j = 0; j + 1 < s.height; ++j)
+            for (int i = 0; i + 1 < s.width; ++i)
+                for (const bool isUp : {false, true}) {
+                    const auto a = static_cast<std::size_t>(j * s.width + i);
+                    const std::size_t b = isUp ? a + static_cast<std::size_t>(s.width) : a + 1;
+                    if (s.tissue[a] == s.tissue[b]) continue;
+                    const Vec3 p = s.originMm + mm * (i * s.uAxis + j * s.vAxis), way = isUp ? s.vAxis : s.uAxis;
+                    const double one = s.away[a][0], two = s.away[b][0], t = one / (one + two);
+                    const double radius = (p + t * mm * way).norm();
+                    const double off = std::min({std::abs(radius - kOuter), std::abs(radius - kDentine),
+                                                 std::abs(radius - kPulp), std::abs(boring(p + t * mm * way, kFloor))});
+                    ++met;
+                    // A tenth of a pixel; where the boring's edge cuts a corner off, less well.
+                    if (off > 0.1 * mm) ++far;
+                    EXPECT_LT(off, 0.6 * mm);
+                    EXPECT_EQ(s.away[a][1] == 255 && s.tissue[b] == 0, false);
+                }
+        EXPECT_GT(met, 200u);
+        EXPECT_LT(far, met / 25);
+    }
+}
+
 TEST_F(Bored, whatMakesNoSenseIsRefused) {
     const ToothProbe probe(*mirror_);
     EXPECT_THROW((void)probe.section(Vec3::Zero(), 0.0), core::Error);

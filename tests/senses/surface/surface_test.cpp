@@ -122,5 +122,36 @@ TEST(Surface, MarginAndFloorOfABoxCutByACylinderAreSharp) {
     }
 }
 
+TEST(Surface, CornersOnAMarginAreLitByTheSurfacesThatMeetThere) {
+    std::mt19937_64 random(test::seed());
+    for (int i = 0; i < 3; ++i) {
+        const Quat turn = test::randomRotation(random);
+        const Vec3 half(0.9, 0.9, 0.5);
+        const double radius = 0.4, floor = -0.1;
+        const auto field = test::sampled(
+            test::cut(test::box(Vec3::Zero(), half, turn), test::cylinderBur(turn * Vec3(0, 0, floor), radius, turn)),
+            {Vec3::Constant(-1.5), Vec3::Constant(1.5)});
+        const FieldSource source(field);
+        Surface surface(source);
+        surface.build();
+        std::size_t corners = 0, off = 0;
+        for (const auto& mesh : surface.meshes())
+            for (const auto& t : mesh->triangles)
+                for (const std::uint16_t corner : t) {
+                    const SurfaceVertex& v = mesh->vertices[corner];
+                    const Vec3 p = turn.conjugate() * Vec3(v.positionMm[0], v.positionMm[1], v.positionMm[2]);
+                    const double r = std::hypot(p.x(), p.y());
+                    if (std::abs(r - radius) > 0.03 || std::abs(p.z() - half.z()) > 0.03) continue;
+                    const Vec3 n = turn.conjugate() * Vec3(v.normal[0], v.normal[1], v.normal[2]);
+                    const Vec3 wall(-p.x() / r, -p.y() / r, 0.0);
+                    ++corners;
+                    // A dozen degrees off both of them.
+                    if (std::max(n.z(), n.dot(wall)) < 0.978) ++off;
+                }
+        EXPECT_GT(corners, 300u);
+        EXPECT_LT(off, corners / 50) << corners;
+    }
+}
+
 }  // namespace
 }  // namespace handpiece::surface

@@ -653,6 +653,60 @@ TEST(Renderer, ACutAwayEndsAtItsPlaneAndShowsTheSectionsFace) {
               "");
 }
 
+TEST(Renderer, ASectionsOutlinesAreSmoothAndUnbroken) {
+    // Dentine in enamel, both round: 20 pixels a millimetre of the picture, as many of the face.
+    constexpr double kOuterMm = 4.03, kInnerMm = 2.47, kPixelMm = 0.05;
+    SectionFace face;
+    face.plane = {Vec3::UnitZ(), 0.0};
+    face.originMm = {-5.0, -5.0, 0.0};
+    face.uAxis = Vec3::UnitX();
+    face.vAxis = Vec3::UnitY();
+    face.mmPerPixel = kPixelMm;
+    face.width = face.height = 201;
+    for (int j = 0; j < face.height; ++j)
+        for (int i = 0; i < face.width; ++i) {
+            const double r = std::hypot(kPixelMm * i - 5.0, kPixelMm * j - 5.0), out = std::abs(r - kOuterMm);
+            const auto steps = [&](double mm) {
+                return static_cast<std::uint8_t>(std::clamp(std::lround(32.0 * mm / kPixelMm), 1L, 255L));
+            };
+            const Tissue tissue = r > kOuterMm ? Tissue::none : r > kInnerMm ? Tissue::enamel : Tissue::dentine;
+            face.tissue.push_back(static_cast<std::uint8_t>(tissue));
+            face.away.push_back({steps(std::min(out, std::abs(r - kInnerMm))), steps(out)});
+        }
+    Renderer renderer;
+    renderer.setTooth(box(6.0, -3.0, 1.0));
+    renderer.setSectionFace(face);
+    constexpr Viewport kLarge{240, 240};
+    Camera camera;
+    camera.eyeMm = {0.0, 0.0, 6.0 / std::tan(0.5 * camera.fieldOfViewRad)};
+    camera.up = Vec3::UnitY();
+    Look look = plainLook();
+    look.cutAway = face.plane;
+    const Image image = picture(renderer, camera, look, withoutBur(), kLarge);
+    for (const double radius : {kOuterMm, kInnerMm}) {
+        std::vector<double> found;
+        for (int i = 0; i < 720; ++i) {
+            // Where the line is darkest, weighted: its middle.
+            const double angle = std::numbers::pi * i / 360.0;
+            double darkest = 765.0, weights = 0.0, sum = 0.0;
+            for (double off = -0.2; off <= 0.2; off += 0.005) {
+                const double r = radius + off;
+                if (radius == kOuterMm && off > -0.025) break;  // the background is dark too
+                const int here = brightness(at(image, camera, {r * std::cos(angle), r * std::sin(angle), 0.0}, kLarge));
+                darkest = std::min(darkest, 1.0 * here);
+                const double weight = std::max(0.0, 330.0 - here);
+                sum += weight * off;
+                weights += weight;
+            }
+            EXPECT_LT(darkest, 330.0) << "at " << i / 2 << " degrees";
+            if (weights > 0.0) found.push_back(std::abs(sum / weights - (radius == kOuterMm ? -0.035 : 0.0)));
+        }
+        std::sort(found.begin(), found.end());
+        ASSERT_GT(found.size(), 700u);
+        EXPECT_LT(found[found.size() * 95 / 100], 0.7 * kPixelMm);
+    }
+}
+
 TEST(Renderer, RemovedDepthsAreColoured) {
     Renderer renderer;
     renderer.setTooth(box(4.0, -1.0, 1.0));

@@ -77,7 +77,7 @@ Shade reference(const Image& image, int x, int y) {
                  sw = bright(pixel(image, x - 1, y + 1)), se = bright(pixel(image, x + 1, y + 1)),
                  here = bright(pixel(image, x, y));
     const double low = std::min({nw, ne, sw, se, here}), high = std::max({nw, ne, sw, se, here});
-    if (high - low < std::max(7.65, 0.08 * high)) return pixel(image, x, y);
+    if (high - low < std::max(3.9, 0.0313 * high)) return pixel(image, x, y);
     double dx = sw + se - nw - ne, dy = nw + sw - ne - se;
     const double scale = 1.0 / (std::min(std::abs(dx), std::abs(dy)) + std::max((nw + ne + sw + se) / 32.0, 2.0));
     dx = std::clamp(dx * scale, -6.0, 6.0);

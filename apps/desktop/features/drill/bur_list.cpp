@@ -177,9 +177,17 @@ void BurDelegate::paint(QPainter* painter, const QStyleOptionViewItem& option, c
     const QFont small = scaledFont(option.font, 0.78);
     const double titleHeight = QFontMetricsF(option.font).height(), lineHeight = QFontMetricsF(small).height();
     const double textTop = cell.bottom() - titleHeight - 2 * lineHeight - 3;
-    // All burs at one scale, so that sizes compare.
-    paintBur(*painter, QRectF(cell.left(), cell.top() + 3, cell.width(), textTop - cell.top() - 6), model->face(row),
-             palette, 6.4, enabled);
+    // All burs whole at one scale, so that sizes compare; beside it the head as large as it is told apart by, small
+    // ones at one scale too.
+    const QRectF picture(cell.left(), cell.top() + 3, cell.width(), textTop - cell.top() - 6);
+    const BurFace& face = model->face(row);
+    QRectF whole = picture, head = picture;
+    whole.setRight(picture.left() + 0.38 * picture.width());
+    head.setLeft(whole.right());
+    paintBur(*painter, whole, face, palette, 6.4, enabled);
+    const double most = std::min(0.82 * head.height() / std::max(0.1, face.lengthMm),
+                                 0.9 * head.width() / std::max(0.1, face.diameterMm));
+    paintBur(*painter, head, face, palette, std::min(24.0, most), enabled);
     painter->setPen(palette.color(group, QPalette::Text));
     painter->setFont(scaledFont(option.font, 1.0, true));
     const auto line = [&](double top, double height, const QString& text) {

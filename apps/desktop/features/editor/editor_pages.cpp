@@ -314,7 +314,7 @@ void PreparationPage::look(bool anew) {
     box = box.grown(2.0);
     box.min = box.min.cwiseMax(whole.min), box.max = box.max.cwiseMin(whole.max);
     const view::Viewport port{std::max(1, picture_->width()), std::max(1, picture_->height())};
-    picture_->setCamera(view::standardView(from, box, tooth_->buccalSign, port));
+    picture_->setCamera(view::standardView(from, box, view::standingOf(tooth_->fdiNumber, tooth_->buccalSign), port));
 }
 
 void PreparationPage::showTask() {

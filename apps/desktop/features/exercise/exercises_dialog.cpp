@@ -286,7 +286,8 @@ void ExercisesDialog::makeIdeal() {
                     box.extend(v);
             view_->setParts(ideal_, box);
             view_->setCaption(tr("The ideal: drag to turn it"), false);
-            view_->lookFrom(view::StandardView::oblique, task_->toothCase.buccalSign);
+            view_->lookFrom(view::StandardView::oblique,
+                            view::standingOf(task_->toothCase.fdiNumber, task_->toothCase.buccalSign));
             // As one begins: a cavity on the far side would not be seen.
             if (const auto& exercise = task_->toothCase.exercise; exercise && exercise->view)
                 view_->setCamera(lookingAs({}, *exercise->view));

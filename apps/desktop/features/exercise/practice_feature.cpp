@@ -467,8 +467,9 @@ fs::path PracticeFeature::placeOf(const tasks::Task& task) {
 void PracticeFeature::turnTo(const core::Vec3& placeMm) {
     const report::Bearings& bearings = done_->work.bearings;
     const core::Box& box = simulator_.tooth()->model().outer.bounds();
-    view::Camera worked = view::standardView(view::StandardView::occlusal, box, bearings.buccalSign,
-                                             {std::max(1, view_.width()), std::max(1, view_.height())});
+    view::Camera worked =
+        view::standardView(view::StandardView::occlusal, box, view::standingOf(bearings.fdi, bearings.buccalSign),
+                           {std::max(1, view_.width()), std::max(1, view_.height())});
     if (const auto& exercise = done_->work.task->toothCase.exercise; exercise && exercise->view)
         worked = lookingAs(worked, *exercise->view);
     const core::Vec3 middle = bearings.asked.isEmpty() ? box.centre() : bearings.asked.centre();

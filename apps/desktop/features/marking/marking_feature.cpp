@@ -490,7 +490,8 @@ void MarkingFeature::goTo(const std::optional<core::Vec3>& placeMm, const std::o
     core::Vec3 along = camera.forward();
     if (const core::Vec3 down(0.0, 0.02, -1.0); !isSeen(along) && isSeen(down.normalized())) {
         along = down.normalized();
-        camera.up = view::occlusalUp(simulator_.toothCase()->buccalSign);
+        const cases::Case& toothCase = *simulator_.toothCase();
+        camera.up = view::occlusalUp(view::standingOf(toothCase.fdiNumber, toothCase.buccalSign));
     }
     camera.targetMm = *placeMm;
     camera.eyeMm = *placeMm - kNearMm * along;

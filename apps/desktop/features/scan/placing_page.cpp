@@ -121,7 +121,8 @@ PlacingPage::PlacingPage(ScanModel& model, QWidget* parent) : ScanPage(model, pa
     for (const auto& eye : kEyes) {
         auto* made = named(new QPushButton(icon(QLatin1String(eye.icon)), eye.text, this), eye.name, eye.text);
         connect(made, &QPushButton::clicked, this, [this, from = eye.view] {
-            solid_->lookFrom(from, buccalSignOf(this->model().job().placing.fdiNumber));
+            const int fdi = this->model().job().placing.fdiNumber;
+            solid_->lookFrom(from, view::standingOf(fdi, buccalSignOf(fdi)));
         });
         eyes->addWidget(made);
     }

@@ -82,6 +82,10 @@ QString eyeKey(const std::filesystem::path& file) {
     const QByteArray hash = QCryptographicHash::hash(QByteArray::fromStdString(file.string()), QCryptographicHash::Md5);
     return QStringLiteral("eyes/%1").arg(QLatin1String(hash.toHex().left(16)));
 }
+/// Of an upper tooth that hangs; where it stood with its crown up is another place.
+QString eyeKey(const std::filesystem::path& file, const view::Standing& standing) {
+    return standing.isUpper ? eyeKey(file) + QStringLiteral("Hanging") : eyeKey(file);
+}
 QString turnKey(const std::filesystem::path& file) {
     return eyeKey(file) + QStringLiteral("Turn");
 }
@@ -173,6 +177,7 @@ void ViewFeature::showDocument() {
     }
     const cases::Case& toothCase = *simulator_.toothCase();
     view_.setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
+    if (isByArm()) view_.setStanding(view::Standing(toothCase.buccalSign));
     const core::Pose held = heldPose();
     view_.setPointer(simulator_.mailbox(), held);
     // As it begins it is not noted: over what a crash has left to be brought back.
@@ -231,7 +236,7 @@ void ViewFeature::keepLook(const view::Look& look) {
 void ViewFeature::rememberEye() {
     if (!view_.hasTooth() || simulator_.document().caseFile.empty()) return;
     const view::Camera& eye = view_.camera();
-    settings_.set(eyeKey(simulator_.document().caseFile),
+    settings_.set(eyeKey(simulator_.document().caseFile, view_.standing()),
                   QStringList{text(eye.eyeMm), text(eye.targetMm), text(eye.up)});
 }
 
@@ -264,8 +269,13 @@ core::Pose ViewFeature::heldPose() const {
     return pose;
 }
 
+/// A real device leads the bur, in whose reach all teeth lie with their crowns up.
+bool ViewFeature::isByArm() const {
+    return simulator_.mode() == Simulator::Mode::liveSession && simulator_.mailbox() == nullptr;
+}
+
 void ViewFeature::recallEye() {
-    const QStringList kept = settings_.value(eyeKey(simulator_.document().caseFile)).toStringList();
+    const QStringList kept = settings_.value(eyeKey(simulator_.document().caseFile, view_.standing())).toStringList();
     std::optional<core::Vec3> eye, target, up;
     if (kept.size() == 3) {
         eye = vecOf(kept[0]);
@@ -279,7 +289,9 @@ void ViewFeature::recallEye() {
         camera.up = up->normalized();
         view_.setCamera(camera);
     } else if (const auto& exercise = simulator_.toothCase()->exercise; exercise && exercise->view) {
-        view_.setCamera(lookingAs(camera, *exercise->view));
+        camera = lookingAs(camera, *exercise->view);
+        if (isByArm() && camera.up.z() < 0.0) camera.up = -camera.up;
+        view_.setCamera(camera);
     } else {
         view_.showStandardView(view::StandardView::oblique);
     }

@@ -40,6 +40,7 @@ class ViewFeature : public Feature {
     void keepLook(const view::Look& look);
     void rememberEye();
     void recallEye();
+    [[nodiscard]] bool isByArm() const;
     [[nodiscard]] core::Pose heldPose() const;
 
     CommandSet<Command> commands_;

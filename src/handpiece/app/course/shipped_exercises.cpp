@@ -248,6 +248,7 @@ cases::View viewOf(const Row& row, int buccalSign) {
     const core::Vec3 aside(0.0, (isClassThree ? -26.0 : 26.0) * buccalSign, 14.0);
     const core::Vec3 above(0.0, 11.0 * buccalSign, 27.0);
     view.eyeMm = view.targetMm + (isFromAside ? aside : above);
+    if (cases::isUpperTooth(row.fdi)) view.up = -view.up;
     return view;
 }
 

@@ -125,7 +125,7 @@ void requireSameExercise(const fs::path& path, const tasks::Task& task) {
 
 }  // namespace
 
-view::Image pictureOf(const assessment::Work& work, int buccalSign, int widthPx, int heightPx) {
+view::Image pictureOf(const assessment::Work& work, const view::Standing& standing, int widthPx, int heightPx) {
     const view::Viewport viewport{widthPx, heightPx};
     tooth::StateDelta own;
     for (const tooth::StateDelta::Brick& brick : work.state.bricks)
@@ -144,7 +144,7 @@ view::Image pictureOf(const assessment::Work& work, int buccalSign, int widthPx,
     look.backgroundTop = look.backgroundBottom = {236, 239, 243};
     view::Moment moment;
     moment.burShown = false;
-    const view::Camera camera = view::standardView(view::StandardView::occlusal, bounds, buccalSign, viewport);
+    const view::Camera camera = view::standardView(view::StandardView::occlusal, bounds, standing, viewport);
     view::Image image;
     for (int i = 0; i < 8 && (renderer.draw(camera, viewport, look, moment, image).refining || i == 0); ++i) {
     }
@@ -173,7 +173,8 @@ Judged judgeReturned(const fs::path& work, const tasks::Task& task, const rubric
     core::report(progress, 0.95);
     if (!pictures) return judged;
     try {
-        judged.picture = pictureOf(done, task.toothCase.buccalSign, kPictureWidth, kPictureHeight);
+        judged.picture = pictureOf(done, view::standingOf(task.toothCase.fdiNumber, task.toothCase.buccalSign),
+                                   kPictureWidth, kPictureHeight);
     } catch (const core::Error&) {
         judged.picture = {};  // no OpenGL: the score stands without a picture
     }

@@ -71,6 +71,7 @@ void scoreAll(std::span<const ReturnedWork> works, const tasks::Task& task, cons
               const std::function<void(std::size_t which, Scored scored)>& done);
 
 /// The tooth worked on, as it was cut, from occlusal. Throws core::Error without OpenGL.
-[[nodiscard]] view::Image pictureOf(const assessment::Work& work, int buccalSign, int widthPx, int heightPx);
+[[nodiscard]] view::Image pictureOf(const assessment::Work& work, const view::Standing& standing, int widthPx,
+                                    int heightPx);
 
 }  // namespace handpiece::marking

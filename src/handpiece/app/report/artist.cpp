@@ -18,7 +18,9 @@ constexpr int kMostDrawings = 8;
 }  // namespace
 
 Artist::Artist(const simulation::SessionPlayer& player, const view::Viewport& viewport)
-    : bounds_(player.station().tooth->outer.bounds()), buccal_(player.toothCase().buccalSign), viewport_(viewport) {
+    : bounds_(player.station().tooth->outer.bounds()),
+      standing_(view::standingOf(player.toothCase().fdiNumber, player.toothCase().buccalSign)),
+      viewport_(viewport) {
     renderer_.setTooth(bounds_);
     renderer_.updateBricks(ofTheTooth(player.tooth()->uncutSurface()), true);
     look_.quality = view::Quality::fine;
@@ -35,13 +37,13 @@ void Artist::cut(std::vector<surface::BrickUpdate> news) {
 
 view::Image Artist::picture(view::StandardView from, view::ToothShown shown) {
     look_.tooth = shown;
-    return drawn(view::standardView(from, bounds_, buccal_, viewport_));
+    return drawn(view::standardView(from, bounds_, standing_, viewport_));
 }
 
 view::Image Artist::pictureFrom(const std::optional<cases::View>& from) {
     if (!from) return picture(view::StandardView::occlusal, view::ToothShown::now);
     look_.tooth = view::ToothShown::now;
-    view::Camera camera = view::standardView(view::StandardView::occlusal, bounds_, buccal_, viewport_);
+    view::Camera camera = view::standardView(view::StandardView::occlusal, bounds_, standing_, viewport_);
     const double farMm = (camera.eyeMm - camera.targetMm).norm();
     camera.targetMm = from->targetMm;
     camera.eyeMm = from->targetMm + farMm * (from->eyeMm - from->targetMm).normalized();
@@ -55,11 +57,11 @@ view::Image Artist::section(const simulation::LiveTooth& tooth, const core::Vec3
     const measure::Section s = tooth.withProbe(
         [&](const measure::ToothProbe& probe) { return probe.section(normal, offset, kSectionPixelMm); });
     renderer_.setSectionFace(
-        {{normal, offset}, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue});
+        {{normal, offset}, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue, s.away});
     look_.tooth = view::ToothShown::now;
     look_.cutAway = view::Plane{normal, offset};
     look_.sectionGrid = true;
-    view::Image image = drawn(view::standardView(view::StandardView::mesial, bounds_, buccal_, viewport_));
+    view::Image image = drawn(view::standardView(view::StandardView::mesial, bounds_, standing_, viewport_));
     look_.cutAway.reset();
     look_.sectionGrid = false;
     return image;

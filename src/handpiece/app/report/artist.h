@@ -30,7 +30,7 @@ class Artist {
 
     view::Renderer renderer_;
     core::Box bounds_;
-    int buccal_;
+    view::Standing standing_;
     view::Viewport viewport_;
     view::Look look_;
     view::Moment moment_;

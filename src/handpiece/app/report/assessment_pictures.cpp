@@ -36,10 +36,10 @@ constexpr double kUnderMm = 6.0;
 class Painter {
   public:
     /// Nothing under `lowestMm` need be seen.
-    Painter(const LiveTooth& live, int buccalSign, double lowestMm, const PictureSettings& settings)
+    Painter(const LiveTooth& live, const view::Standing& standing, double lowestMm, const PictureSettings& settings)
         : live_(live),
           bounds_(live.model().outer.bounds()),
-          buccal_(buccalSign),
+          standing_(standing),
           viewport_{settings.width, settings.height} {
         renderer_.setTooth(bounds_);
         bounds_.min.z() = std::max(bounds_.min.z(), lowestMm);
@@ -57,7 +57,7 @@ class Painter {
         look_.shadows = look_.wet = false;
     }
     [[nodiscard]] view::Camera standard(StandardView from) const {
-        return view::standardView(from, bounds_, buccal_, viewport_);
+        return view::standardView(from, bounds_, standing_, viewport_);
     }
     [[nodiscard]] Png picture(const view::Camera& camera) {
         view::Image image;
@@ -70,7 +70,8 @@ class Painter {
         const measure::Section s = live_.withProbe([&](const measure::ToothProbe& probe) {
             return probe.section(plane.normal, plane.offsetMm, kFacePixelMm);
         });
-        renderer_.setSectionFace({plane, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue});
+        renderer_.setSectionFace(
+            {plane, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue, s.away});
         look_.cutAway = plane;
         look_.sectionGrid = true;
         Png png = picture(standard(from));
@@ -101,7 +102,7 @@ class Painter {
   private:
     const LiveTooth& live_;
     core::Box bounds_;
-    int buccal_;
+    view::Standing standing_;
     view::Viewport viewport_;
     view::Renderer renderer_;
     view::Look look_;
@@ -169,7 +170,8 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
     core::report(progress, 0.1);
     const auto live = std::make_unique<LiveTooth>(whole, own, core::part(progress, 0.1, 0.4));
     const Vec3 middle = middleOf(*whole, own, idealState ? &*idealState : nullptr);
-    const int buccal = task.toothCase.buccalSign < 0 ? -1 : 1;
+    const view::Standing standing = view::standingOf(task.toothCase.fdiNumber, task.toothCase.buccalSign);
+    const int buccal = standing.buccalSign < 0 ? -1 : 1;
     const std::vector<StandardView> views = {StandardView::occlusal, StandardView::buccal, StandardView::lingual,
                                              StandardView::mesial, StandardView::distal};
     const std::vector<std::pair<StandardView, view::Plane>> sections = {
@@ -190,13 +192,13 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
     // Outlines need no OpenGL.
     for (std::size_t i = 0; i < sections.size(); ++i) {
         const view::Plane& plane = sections[i].second;
-        const Vec3 up = Vec3::UnitZ(), right = up.cross(plane.normal);
+        const Vec3 up = standing.up(), right = up.cross(plane.normal);
         SectionOutlines outlines;
         outlines.box = whole->outer.bounds();
         outlines.originMm = plane.offsetMm * plane.normal;
         outlines.right = right;
         outlines.up = up;
-        outlines.lowestMm = lowest;
+        (standing.isUpper ? outlines.highestMm : outlines.lowestMm) = up.z() * lowest;
         outlines.before = [&](const Vec3& p) { return whole->tree.signedDistance(p); };
         if (laid) outlines.ideal = [&](const Vec3& p) { return toIdealMm(*laid->zones, whole->tree, p); };
         pictures.views[views.size() + i].outlines = live->withProbe([&](const measure::ToothProbe& probe) {
@@ -210,7 +212,7 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
     try {
         const std::vector<surface::BrickUpdate> bricks = surfaceOf(*live);
         {
-            Painter artist(*live, buccal, lowest, settings);
+            Painter artist(*live, standing, lowest, settings);
             artist.show(bricks);
             for (std::size_t i = 0; i < views.size(); ++i)
                 pictures.views[i].own = artist.picture(artist.standard(views[i]));
@@ -233,14 +235,14 @@ AssessmentPictures assessmentPictures(const tasks::Task& task, const tooth::Teet
         }
         core::report(progress, 0.7);
         if (laid) {
-            Painter coloured(*live, buccal, lowest, settings);
+            Painter coloured(*live, standing, lowest, settings);
             coloured.colourDeviation();
             coloured.show(withDeviation(bricks, *laid->zones, whole->tree));
             for (std::size_t i = 0; i < views.size(); ++i)
                 pictures.views[i].deviation = coloured.picture(coloured.standard(views[i]));
             core::report(progress, 0.8);
             const auto ideal = std::make_unique<LiveTooth>(whole, *idealState, core::part(progress, 0.8, 0.9));
-            Painter artist(*ideal, buccal, lowest, settings);
+            Painter artist(*ideal, standing, lowest, settings);
             artist.show(surfaceOf(*ideal));
             for (std::size_t i = 0; i < views.size(); ++i)
                 pictures.views[i].ideal = artist.picture(artist.standard(views[i]));

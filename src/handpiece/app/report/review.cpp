@@ -210,6 +210,7 @@ Json headOf(const Gathered& seen, const std::string& title) {
     json["words"] = std::move(said);
     json["durationS"] = rounded(seen.durationS(), 0.001);
     json["buccalSign"] = seen.buccalSign;
+    json["isUpper"] = seen.isUpper;
     json["notes"] = seen.notes;
     json["grid"] = {{"originMm", Json::array({view.originMm[0], view.originMm[1], view.originMm[2]})},
                     {"voxelMm", seen.grid->voxelMm()},

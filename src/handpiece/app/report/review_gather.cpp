@@ -5,6 +5,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/model/field/brick_tissues.h"
 
 namespace handpiece::report {
@@ -95,6 +96,7 @@ void Gathered::takeTooth(const simulation::SessionPlayer& of) {
     model = of.station().tooth;
     grid.emplace(model->field.view());
     buccalSign = of.toothCase().buccalSign < 0 ? -1 : 1;
+    isUpper = cases::isUpperTooth(of.toothCase().fdiNumber);
     caseKey = cases::caseKey(of.toothCase());
     uncut.nodes = tissue.nodes = grid->nodes;
     const std::size_t count = static_cast<std::size_t>(grid->nodes[0]) * static_cast<std::size_t>(grid->nodes[1]) *

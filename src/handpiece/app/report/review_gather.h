@@ -115,6 +115,7 @@ struct Gathered {
     std::shared_ptr<const tooth::ToothModel> model;
     std::optional<PageGrid> grid;
     int buccalSign = 1;
+    bool isUpper = false;
     std::uint64_t caseKey = 0;
     std::vector<std::string> notes;
     Around around;

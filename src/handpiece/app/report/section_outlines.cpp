@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "handpiece/base/core/parallel.h"
@@ -43,11 +45,12 @@ std::vector<SectionLine> linesOf(const Grid& grid) {
                 p[k] = {grid.u0 + kCellMm * (i + du[k]), grid.v0 + kCellMm * (j + dv[k])};
             }
             for (int k = 0; k < 4; ++k) {
-                const int n = (k + 1) % 4;
-                isCrossed[k] = (f[k] < 0.0) != (f[n] < 0.0);
+                // From the lower end: the same bits in the cell beside.
+                const int low = k < 2 ? k : k == 2 ? 3 : 0, high = k < 2 ? k + 1 : k == 2 ? 2 : 3;
+                isCrossed[k] = (f[low] < 0.0) != (f[high] < 0.0);
                 if (!isCrossed[k]) continue;
                 ++count;
-                crossing[k] = p[k] + f[k] / (f[k] - f[n]) * (p[n] - p[k]);
+                crossing[k] = p[low] + f[low] / (f[low] - f[high]) * (p[high] - p[low]);
             }
             if (count == 2) {
                 int found = 0;
@@ -62,6 +65,41 @@ std::vector<SectionLine> linesOf(const Grid& grid) {
                 add(crossing[(first + 2) % 4], crossing[(first + 3) % 4]);
             }
         }
+    return lines;
+}
+
+/// Pieces joined where they meet, so that a line's dashes run on along it; a closed one ends where it begins.
+std::vector<std::vector<Vec2>> joined(const std::vector<SectionLine>& pieces) {
+    using Key = std::pair<double, double>;
+    const auto key = [](const Vec2& p) { return Key(p.x(), p.y()); };
+    std::multimap<Key, std::size_t> at;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        at.emplace(key(pieces[i].from), i);
+        at.emplace(key(pieces[i].to), i);
+    }
+    std::vector<bool> isTaken(pieces.size(), false);
+    const auto extend = [&](std::vector<Vec2>& line) {
+        for (bool isOn = true; isOn;) {
+            isOn = false;
+            const auto [begin, end] = at.equal_range(key(line.back()));
+            for (auto i = begin; i != end && !isOn; ++i) {
+                if (isTaken[i->second]) continue;
+                isTaken[i->second] = isOn = true;
+                const SectionLine& piece = pieces[i->second];
+                line.push_back(piece.from == line.back() ? piece.to : piece.from);
+            }
+        }
+    };
+    std::vector<std::vector<Vec2>> lines;
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+        if (isTaken[i]) continue;
+        isTaken[i] = true;
+        std::vector<Vec2>& line = lines.emplace_back();
+        line = {pieces[i].from, pieces[i].to};
+        extend(line);
+        std::reverse(line.begin(), line.end());
+        extend(line);
+    }
     return lines;
 }
 
@@ -106,6 +144,7 @@ std::string outlinesSvg(const SectionOutlines& outlines) {
         high = high.cwiseMax(at + margin);
     }
     low.y() = std::max(low.y(), outlines.lowestMm - outlines.up.dot(outlines.originMm));
+    high.y() = std::min(high.y(), outlines.highestMm - outlines.up.dot(outlines.originMm));
     if (high.y() < low.y()) return {};
     const double highU = high.x(), highV = high.y();
     const auto lineOf = [&](const geometry::ScalarFunction& f) {
@@ -114,10 +153,9 @@ std::string outlinesSvg(const SectionOutlines& outlines) {
             fmt::format_to(std::back_inserter(d), "{}{:.2f} {:.2f}", command, (p.x() - low.x()) * kPixelsPerMm,
                            (highV - p.y()) * kPixelsPerMm);
         };
-        for (const SectionLine& line : linesIn(outlines, low, high, f)) {
-            put("M", line.from);
-            put("L", line.to);
-        }
+        for (const std::vector<Vec2>& line : joined(linesIn(outlines, low, high, f)))
+            for (std::size_t i = 0; i < line.size(); ++i)
+                put(i == 0 ? "M" : "L", line[i]);
         return d;
     };
     const double w = (highU - low.x()) * kPixelsPerMm, h = (highV - low.y()) * kPixelsPerMm;

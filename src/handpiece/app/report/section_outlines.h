@@ -15,7 +15,7 @@ namespace handpiece::report {
 struct SectionOutlines {
     core::Box box;                                ///< of the tooth
     core::Vec3 originMm, right, up;               ///< of the plane; unit
-    double lowestMm = -1e9;                       ///< nothing under this height along `up` is drawn
+    double lowestMm = -1e9, highestMm = 1e9;      ///< along `up`: nothing under or over it is drawn
     geometry::ScalarFunction before, own, ideal;  ///< signed distances; `ideal` may be empty
 };
 /// Where `f` is zero in the plane, between two corners of it [mm from its origin]; lines lie within 0.02 mm.

@@ -252,7 +252,8 @@ Answer picture(const Json& asked, const core::Progress& progress) {
     // Whether it is proven is asked elsewhere: what is seen here is what the last session left.
     const assessment::Work work = assessment::readChain(chain, task, false, progress);
     const view::Image image =
-        marking::pictureOf(work, task.toothCase.buccalSign, asked.at("width"), asked.at("height"));
+        marking::pictureOf(work, view::standingOf(task.toothCase.fdiNumber, task.toothCase.buccalSign),
+                           asked.at("width"), asked.at("height"));
     const auto* pixels = reinterpret_cast<const std::byte*>(image.rgba.data());
     return {{}, {pixels, pixels + image.rgba.size()}};
 }

@@ -151,7 +151,7 @@ NamedPicture sliceOf(const ScanResult& result, int axis) {
 class Artist {
   public:
     Artist(const cases::Case& toothCase, double voxelMm, int width, int height, const core::Progress& progress)
-        : buccal_(toothCase.buccalSign), viewport_{width, height} {
+        : standing_(view::standingOf(toothCase.fdiNumber, toothCase.buccalSign)), viewport_{width, height} {
         simulation::SimulationSettings settings;
         settings.field.voxelMm = voxelMm;
         settings.tissues = toothCase.tissues;
@@ -175,16 +175,17 @@ class Artist {
         moment_.burShown = false;
     }
     NamedPicture view(view::StandardView from, std::string caption) {
-        return drawn(view::standardView(from, bounds_, buccal_, viewport_), std::move(caption));
+        return drawn(view::standardView(from, bounds_, standing_, viewport_), std::move(caption));
     }
     NamedPicture section(const Vec3& normal, view::StandardView from, std::string caption) {
-        const view::Camera camera = view::standardView(from, bounds_, buccal_, viewport_);
+        const view::Camera camera = view::standardView(from, bounds_, standing_, viewport_);
         const Vec3 towards = normal.dot(camera.forward()) > 0.0 ? Vec3(-normal) : normal;
         const view::Plane plane{towards, towards.dot(bounds_.centre())};
         const measure::Section s = live_->withProbe([&](const measure::ToothProbe& probe) {
             return probe.section(plane.normal, plane.offsetMm, kSectionPixelMm);
         });
-        renderer_.setSectionFace({plane, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue});
+        renderer_.setSectionFace(
+            {plane, s.originMm, s.uAxis, s.vAxis, s.mmPerPixel, s.width, s.height, s.tissue, s.away});
         look_.cutAway = plane;
         look_.sectionGrid = true;
         NamedPicture made = drawn(camera, std::move(caption));
@@ -199,7 +200,7 @@ class Artist {
                 all.extend(v);
         for (const cases::Tissue t : {cases::Tissue::neighbour, cases::Tissue::bone, cases::Tissue::gum})
             look_.visible[static_cast<std::size_t>(t)] = true;
-        return drawn(view::standardView(view::StandardView::buccal, all, buccal_, viewport_),
+        return drawn(view::standardView(view::StandardView::buccal, all, standing_, viewport_),
                      "with what stands around it");
     }
 
@@ -215,7 +216,7 @@ class Artist {
     view::Renderer renderer_;
     std::unique_ptr<simulation::LiveTooth> live_;
     core::Box bounds_;
-    int buccal_;
+    view::Standing standing_;
     view::Viewport viewport_;
     view::Look look_;
     view::Moment moment_;

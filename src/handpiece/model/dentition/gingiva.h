@@ -32,7 +32,7 @@ struct Periodontium {
 };
 
 struct PeriodontiumOptions {
-    double spacingMm = 0.25;
+    double spacingMm = 0.2;
     std::size_t gingivaFaces = 150000, boneFaces = 60000;  ///< at most
 };
 

@@ -84,9 +84,29 @@ class Finder {
         return found;
     }
 
+    /// Where a side stands out farthest: the middle of the heights at which it does so by nearly as much, which fine
+    /// waves of the surface move less than the one that is the widest.
+    double widestHeight(const Vec3& out, double fromZ, double toZ) const {
+        constexpr double kStepMm = 0.25, kAlikeMm = 0.05;
+        std::vector<double> wide;
+        for (double h = fromZ; h < toZ; h += kStepMm)
+            wide.push_back(side(out, h).dot(out));
+        if (wide.empty()) return fromZ;
+        const double least = *std::max_element(wide.begin(), wide.end()) - kAlikeMm;
+        double sum = 0.0, weights = 0.0;
+        for (std::size_t i = 0; i < wide.size(); ++i)
+            if (const double over = wide[i] - least; over > 0.0) {
+                sum += over * (fromZ + kStepMm * static_cast<double>(i));
+                weights += over;
+            }
+        return sum / weights;
+    }
+
     void around() {
         constexpr int kPoints = 48;
+        constexpr int kEvenedOver = 4;  // directions to either side
         std::vector<Vec3> contour, junction;
+        std::vector<double> heights;
         const double top = a_.highest.z();
         for (int i = 0; i < kPoints; ++i) {
             const double rad = 2.0 * std::numbers::pi * i / kPoints;
@@ -98,18 +118,18 @@ class Finder {
                 if (std::abs(above) < 1e-7) break;
             }
             junction.push_back(side(out, z));
-            // Height of contour: the widest, by golden section around the best of some heights.
-            const auto wide = [&](double h) { return side(out, h).dot(out); };
-            double best = z, widest = -1.0;
-            for (double h = z + 0.3; h < 0.85 * top; h += 0.5)
-                if (const double w = wide(h); w > widest) widest = w, best = h;
-            double low = best - 0.5, high = best + 0.5;
-            for (int step = 0; step < 11; ++step) {
-                const double c = high - 0.618 * (high - low), d = low + 0.618 * (high - low);
-                const bool isLow = wide(c) > wide(d);
-                (isLow ? high : low) = isLow ? d : c;
+            heights.push_back(widestHeight(out, z + 0.3, 0.85 * top));
+        }
+        // Round the tooth it is one even line: what the surface's unevenness and grooves add at a place is none of it.
+        for (int i = 0; i < kPoints; ++i) {
+            const double rad = 2.0 * std::numbers::pi * i / kPoints;
+            double sum = 0.0, weights = 0.0;
+            for (int k = -kEvenedOver; k <= kEvenedOver; ++k) {
+                const double share = static_cast<double>(k) / (kEvenedOver + 1), weight = (1.0 - share * share);
+                sum += weight * heights[static_cast<std::size_t>((i + k + kPoints) % kPoints)];
+                weights += weight;
             }
-            contour.push_back(side(out, 0.5 * (low + high)));
+            contour.push_back(side(Vec3(core::cos(rad), core::sin(rad), 0.0), sum / weights));
         }
         add(LandmarkKind::heightOfContour, "", std::move(contour));
         add(LandmarkKind::cementoEnamelJunction, "", std::move(junction));

@@ -10,6 +10,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/decimate.h"
+#include "handpiece/base/geometry/fit_creases.h"
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/dentition/tooth_body.h"
@@ -104,8 +105,9 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
             // Where thin edges have come to cross or are pierced, other samples are not.
             constexpr int kTries = 5;
             for (int attempt = 0; attempt < kTries; ++attempt) {
-                const TriangleMesh fine =
-                    largestShell(sampled(form.bounds(), of(i), spacing * (1.0 - 0.04 * attempt), 2, told(i, 0.0, 0.5)));
+                const double cellMm = spacing * (1.0 - 0.04 * attempt);
+                TriangleMesh fine = largestShell(sampled(form.bounds(), of(i), cellMm, 2, told(i, 0.0, 0.5)));
+                if (i == 0) geometry::fitCreases(fine, of(i), cellMm);
                 meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;
                 const bool isBall = 2 * meshes[i].vertices.size() == meshes[i].triangles.size() + 4;
                 if (isBall && geometry::selfIntersections(meshes[i], 1).empty()) break;

@@ -19,6 +19,7 @@ using field::kBrickCells;
 using field::kBrickNodes;
 
 constexpr double kMaxPixels = 64e6;
+constexpr float kAwaySteps = 32.0f;  // of Section::away
 
 /// Calls found(low, high, lowNode, highNode) for the edges of a brick's cells that begin at nodes 0..7.
 template <class Found>
@@ -31,6 +32,33 @@ void eachEdge(const Found& found) {
                 for (int axis = 0; axis < 3; ++axis)
                     found(low, low + kStep[axis], std::array<int, 3>{x, y, z}, axis);
             }
+}
+
+/// Distances [pixels] of a picture's pixels to a boundary between them: those that are only bounds are held to what the
+/// pixels beside them tell, of which one across the boundary is no farther from it than the way between the two.
+template <class Same>
+void holdToNeighbours(std::vector<float>& away, int width, int height, const Same& same) {
+    constexpr float kDiagonal = 1.4142135f;
+    const auto from = [&](int x, int y, int dx, int dy) {
+        if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) return;
+        const auto at = static_cast<std::size_t>(x) + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+        const auto by =
+            static_cast<std::size_t>(x + dx) + static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width);
+        const float way = dx != 0 && dy != 0 ? kDiagonal : 1.0f;
+        away[at] = std::min(away[at], same(at, by) ? away[by] + way : way);
+    };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (const auto& [dx, dy] : {std::pair{-1, 0}, {-1, -1}, {0, -1}, {1, -1}})
+                from(x, y, dx, dy);
+    for (int y = height - 1; y >= 0; --y)
+        for (int x = width - 1; x >= 0; --x)
+            for (const auto& [dx, dy] : {std::pair{1, 0}, {1, 1}, {0, 1}, {-1, 1}})
+                from(x, y, dx, dy);
+}
+
+std::uint8_t inSteps(float pixels) {
+    return static_cast<std::uint8_t>(std::clamp(std::lround(kAwaySteps * pixels), 1L, 255L));
 }
 
 bool isUnit(const Vec3& v) {
@@ -51,6 +79,36 @@ struct ToothProbe::State {
     [[nodiscard]] bool wasDeep(const Vec3& p) const {
         const field::DistanceField& uncut = base.field;
         return uncut.distance(p) < (uncut.isFine(p) ? -uncut.settings().voxelMm : 0.0);
+    }
+    /// At a point in the tooth; `awayMm` becomes less where what is of another tissue is nearer than that.
+    [[nodiscard]] Tissue tissueAt(const Vec3& p, double& awayMm) const {
+        const field::TissueMap& map = base.tissues;
+        const field::FieldView& view = field.view();
+        std::int32_t brick[3];
+        int cell[3];
+        double t[3];
+        for (int k = 0; k < 3; ++k) {
+            const double u = (p[k] - view.originMm[k]) * view.inverseVoxelMm;
+            if (!(u >= 0.0 && u <= kBrickCells * view.bricks[k])) return map.at(p);
+            const int whole = std::min(static_cast<int>(u), kBrickCells * view.bricks[k] - 1);
+            brick[k] = whole / kBrickCells;
+            cell[k] = whole % kBrickCells;
+            t[k] = u - whole;
+        }
+        const field::TissueMap::Layers layers =
+            map.layers(static_cast<std::uint32_t>(brick[0] + view.bricks[0] * (brick[1] + view.bricks[1] * brick[2])));
+        const int corner = cell[0] + kBrickNodes * (cell[1] + kBrickNodes * cell[2]);
+        for (const field::TissueMap::Layer& layer : layers.layers) {
+            double value = 0.0;
+            for (int i = 0; i < 8; ++i) {
+                const int dx = i & 1, dy = i >> 1 & 1, dz = i >> 2;
+                const double weight = (dx ? t[0] : 1.0 - t[0]) * (dy ? t[1] : 1.0 - t[1]) * (dz ? t[2] : 1.0 - t[2]);
+                value += weight * layer.values[corner + dx + kBrickNodes * (dy + kBrickNodes * dz)];
+            }
+            awayMm = std::min(awayMm, std::abs(value) * map.unitMm());
+            if (value < 0.0) return layer.tissue;
+        }
+        return layers.rest;
     }
     /// What a ray along `inward` meets at a point of the surface.
     [[nodiscard]] Tissue under(const Vec3& p, const Vec3& inward) const {
@@ -194,14 +252,30 @@ Section ToothProbe::section(const Vec3& normal, double offsetMm, double mmPerPix
                        offsetMm / normal.norm() * n;
     const auto width = static_cast<std::size_t>(section.width), height = static_cast<std::size_t>(section.height);
     section.tissue.assign(width * height, 0);
+    std::vector<float> others(width * height), surface(width * height);  // [pixels]
     core::parallelFor(height, 8, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j) {
             const Vec3 row = section.originMm + static_cast<double>(j) * mmPerPixel * section.vAxis;
-            for (std::size_t i = 0; i < width; ++i)
-                section.tissue[j * width + i] =
-                    static_cast<std::uint8_t>(tissueAt(row + static_cast<double>(i) * mmPerPixel * section.uAxis));
+            for (std::size_t i = 0; i < width; ++i) {
+                const Vec3 p = row + static_cast<double>(i) * mmPerPixel * section.uAxis;
+                const double outMm = state_->field.signedDistanceMm(p);
+                const std::size_t at = j * width + i;
+                double awayMm = std::abs(outMm);
+                surface[at] = static_cast<float>(awayMm / mmPerPixel);
+                if (outMm < 0.0) section.tissue[at] = static_cast<std::uint8_t>(state_->tissueAt(p, awayMm));
+                others[at] = static_cast<float>(awayMm / mmPerPixel);
+            }
         }
     });
+    const auto isOf = [&](std::size_t a, std::size_t b) { return section.tissue[a] == section.tissue[b]; };
+    const auto isSide = [&](std::size_t a, std::size_t b) {
+        return (section.tissue[a] == 0) == (section.tissue[b] == 0);
+    };
+    holdToNeighbours(others, section.width, section.height, isOf);
+    holdToNeighbours(surface, section.width, section.height, isSide);
+    section.away.resize(width * height);
+    for (std::size_t at = 0; at < section.away.size(); ++at)
+        section.away[at] = {inSteps(others[at]), inSteps(surface[at])};
     return section;
 }
 

@@ -30,6 +30,9 @@ struct Section {
     double mmPerPixel = 0.05;
     int width = 0, height = 0;
     std::vector<std::uint8_t> tissue;  ///< cases::Tissue by pixel, row by row along u; none where there is no tooth
+    /// By pixel, in 32nds of one, up to where a byte ends: how far it lies from what is of another tissue, and from the
+    /// tooth's surface. They tell where between two pixels a boundary runs.
+    std::vector<std::array<std::uint8_t, 2>> away;
 };
 
 /// The tooth as `mirror` has it. One thread, the one that feeds the mirror.

@@ -39,6 +39,8 @@ constexpr float kMargin = 1.0f / 512.0f;
 /// asked for the plane that they see.
 constexpr float kNearNode = 1.25f, kUnitSlack = 0.1f;
 constexpr float kNodeHold = 0.003f;
+/// What a plane whose edge has a kink on it counts for where a surface's own normal is asked for.
+constexpr float kUncleanWeight = 0.2f;
 /// A vertex may go this share of the way from its own crossings to those of a cell beside it.
 constexpr float kReach = 0.75f;
 /// How far a vertex may stand out through a face behind which nothing is [voxels].
@@ -446,6 +448,7 @@ class Contourer {
         vertex.cell = number;
         vertex.isSharp = sum.leastCosine < kSharpCosine;
         vertex.normal = sum.normal;
+        if (vertex.isSharp) vertex.sides = sidesOf(planes, count);
         const PlaneSum crossings = sum;
         if (vertex.isSharp || !sum.isClean) takeNodePlanes(sum, at, planes, count);
         Float3 x = sum.solve();
@@ -464,6 +467,33 @@ class Contourer {
             vertex.positionMm[k] =
                 static_cast<float>(cornerMm_[k] + voxelMm_ * (static_cast<double>(sum.mean[k]) + x[k]));
         out.vertices.push_back(vertex);
+    }
+
+    /// The planes of two surfaces that meet in an edge of the solid, told apart by the two that differ most.
+    static std::array<Float3, 2> sidesOf(const Plane* const* planes, int count) {
+        int seeds[2] = {0, 0};
+        float least = 1.0f;
+        for (int i = 0; i < count; ++i)
+            for (int j = 0; j < i; ++j)
+                if (const float cosine = dot(planes[i]->normal, planes[j]->normal); cosine < least) {
+                    least = cosine;
+                    seeds[0] = j;
+                    seeds[1] = i;
+                }
+        std::array<Float3, 2> sides{};
+        for (int i = 0; i < count; ++i) {
+            const Float3& n = planes[i]->normal;
+            const bool isSecond = dot(n, planes[seeds[1]]->normal) > dot(n, planes[seeds[0]]->normal);
+            const float weight = planes[i]->isClean ? 1.0f : kUncleanWeight;
+            for (std::size_t k = 0; k < 3; ++k)
+                sides[isSecond ? 1 : 0][k] += weight * n[k];
+        }
+        for (Float3& side : sides) {
+            const float length = std::sqrt(dot(side, side));
+            for (float& k : side)
+                k = length > 1e-6f ? k / length : 0.0f;
+        }
+        return sides;
     }
 
     /// Near an edge of the solid: planes at the distance that each node of the cell tells, along its own gradient, so

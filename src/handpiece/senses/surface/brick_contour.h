@@ -18,6 +18,8 @@ struct SheetVertex {
     std::uint16_t cell = 0;  ///< x + 8 y + 64 z in its brick
     bool isSharp = false;    ///< on an edge or a corner: it has no one normal
     cases::Tissue tissue = cases::Tissue::none;
+    /// Of a sharp one: unit, out of the two surfaces that meet in it; zero where they are not told apart.
+    std::array<std::array<float, 3>, 2> sides{};
 
     friend bool operator==(const SheetVertex&, const SheetVertex&) = default;
 };

@@ -23,13 +23,21 @@ class TissueSplitter {
     struct Point {
         std::array<float, 3> positionMm, normal;
     };
-    std::uint16_t corner(const TriangleList& list, Ref ref, const std::array<float, 3>& flat);
+    /// How a triangle's corners are lit: each by the surface that the triangle is of.
+    struct Lit {
+        std::array<std::array<float, 3>, 3> normal;
+        std::array<std::uint8_t, 3> side;  ///< of a sharp vertex: which; kPlain: it has but one; kFlat: the triangle's
+    };
+    [[nodiscard]] static Lit lit(const std::array<const SheetVertex*, 3>& v);
+    std::uint16_t corner(const SheetVertex& v, Ref ref, const std::array<float, 3>& normal, std::uint8_t side);
     std::uint16_t add(const Point& point, cases::Tissue tissue);
-    [[nodiscard]] Point cut(const SheetVertex& a, const SheetVertex& b, const field::TissueMap& tissues) const;
+    [[nodiscard]] Point cut(const SheetVertex& a, const std::array<float, 3>& normalA, const SheetVertex& b,
+                            const std::array<float, 3>& normalB, const field::TissueMap& tissues) const;
     void splitInTwo(const TriangleList& list, const std::array<Ref, 3>& t, const field::TissueMap& tissues);
     void splitInThree(const TriangleList& list, const std::array<Ref, 3>& t, const field::TissueMap& tissues);
 
-    std::vector<std::uint16_t> placed_;  ///< by vertex of the bricks: its number in the mesh
+    /// By vertex of the bricks, twice: its number in the mesh, for either side of a sharp one.
+    std::vector<std::uint16_t> placed_;
     std::array<std::size_t, 9> first_{};
     BrickMesh mesh_;
 };

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/model/case/fdi.h"
 #include "handpiece/senses/view/occlusal.h"
 
 namespace handpiece::view {
@@ -115,12 +116,16 @@ StandardView viewByName(std::string_view name) {
     throw core::Error("there is no view of this name", std::string(name), "there are: " + known);
 }
 
-Camera standardView(StandardView view, const core::Box& bounds, int buccalSign, const Viewport& viewport) {
-    const double buccal = buccalSign < 0 ? -1.0 : 1.0;
-    Vec3 from = Vec3::UnitZ(), up = Vec3::UnitZ();
+Standing standingOf(int fdiNumber, int buccalSign) {
+    return {buccalSign, cases::isUpperTooth(fdiNumber)};
+}
+
+Camera standardView(StandardView view, const core::Box& bounds, const Standing& standing, const Viewport& viewport) {
+    const double buccal = standing.buccalSign < 0 ? -1.0 : 1.0;
+    Vec3 from = Vec3::UnitZ(), up = standing.up();
     switch (view) {
         case StandardView::occlusal:
-            up = occlusalUp(buccalSign);
+            up = occlusalUp(standing);
             break;
         case StandardView::buccal:
             from = {0.0, buccal, 0.0};

@@ -53,16 +53,30 @@ struct Ray {
 [[nodiscard]] Camera zoomed(const Camera& camera, const Viewport& viewport, const core::Vec2& pixel, double factor,
                             const std::optional<core::Vec3>& pointMm = {});
 
-/// The standard dental views, from that side. The crown points up in all but the occlusal one, which looks down on it
-/// (along -z) with lingual at the top of the picture (occlusal.h says why); mesial is then on the left for
-/// buccal +y and on the right for buccal -y. Oblique: from buccal, mesial and above.
+/// How a tooth stands in the mouth, as far as a picture of it must know.
+struct Standing {
+    int buccalSign = 0;    ///< as in cases::Case; 0 counts as +1
+    bool isUpper = false;  ///< its crown hangs down: +z, occlusal, is down in the picture
+
+    Standing(int sign = 0, bool upper = false) : buccalSign(sign), isUpper(upper) {}  // NOLINT: a lower one by its sign
+    /// Up in a picture from a side.
+    [[nodiscard]] core::Vec3 up() const { return {0.0, 0.0, isUpper ? -1.0 : 1.0}; }
+};
+/// As its FDI number says; without one as a lower tooth stands, crown up.
+[[nodiscard]] Standing standingOf(int fdiNumber, int buccalSign);
+
+/// The standard dental views, from that side, as who sits before the patient sees them: a lower crown points up, an
+/// upper one down. The occlusal one looks along -z, with lingual at the top of the picture for a lower tooth and buccal
+/// for an upper one (occlusal.h says why). From buccal mesial is on the right for teeth of the patient's right side.
+/// Oblique: from buccal, mesial and occlusal.
 enum class StandardView { occlusal, buccal, lingual, mesial, distal, oblique };
 /// In the order of the keys 1 to 6, with their names as typed ("occlusal").
 [[nodiscard]] const std::vector<std::pair<StandardView, std::string_view>>& standardViews();
 /// By name; throws core::Error naming those there are.
 [[nodiscard]] StandardView viewByName(std::string_view name);
-/// Such that `bounds` fills the picture. `buccalSign` as in cases::Case; 0 counts as +1.
-[[nodiscard]] Camera standardView(StandardView view, const core::Box& bounds, int buccalSign, const Viewport& viewport);
+/// Such that `bounds` fills the picture.
+[[nodiscard]] Camera standardView(StandardView view, const core::Box& bounds, const Standing& standing,
+                                  const Viewport& viewport);
 /// The same direction, moved so that all of `bounds` is seen and fills the picture but for a small margin. The target
 /// comes to lie at the depth of the box's middle.
 [[nodiscard]] Camera fitted(const Camera& camera, const core::Box& bounds, const Viewport& viewport);

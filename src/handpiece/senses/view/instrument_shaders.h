@@ -27,6 +27,7 @@ uniform float goneMm, wholeMm;
 #ifdef BUR
 uniform vec3 tip, toEye;  // the bur's, and from there
 uniform float eyeMm, siteMm, glassFrom, glassOver;
+uniform float heldFrom, heldShare;  // where the shank goes into the head, and how much of that is drawn
 #else
 uniform float share[32], shareFrom, shareStep;  // of the handpiece, along its handle
 #endif
@@ -112,8 +113,8 @@ void main() {
     vec3 root = sqrt(c);
     c = 0.9549 * root + 0.0956 * sqrt(root) - 0.0511 * c;
 #ifdef GLASS
-    // What is so near to the eye that it would fill the picture fades away.
-    float there = smoothstep(goneMm, wholeMm, 1.0 / gl_FragCoord.w);
+    // What is so near to the eye that it would fill the picture is gone; on a short way, or a veil lies over the work.
+    float there = smoothstep(goneMm + 0.42 * (wholeMm - goneMm), goneMm + 0.58 * (wholeMm - goneMm), 1.0 / gl_FragCoord.w);
 #ifdef BUR
     // What lies over the place that is worked at too, the more the higher it lies.
     vec3 w = at - tip;
@@ -128,12 +129,16 @@ void main() {
     // Light that the glass throws back is seen whatever lies behind.
     float spark = clamp(2.0 * (c.g - 0.82), 0.0, 0.35);
     float veil = mix(max(edge, spark), 1.0, solid);
+    // A shank that nothing holds would float: it ends with the head.
+    there *= mix(1.0 - smoothstep(heldFrom, heldFrom + 2.5, local.z), 1.0, heldShare);
+    if (there < 0.01) discard;
     colour = there * vec4(mix(glass, c, solid) * veil, veil);
 #else
     // Of the handpiece nothing: its rims would lie over the work like a bell jar.
     float slice = clamp((local.x - shareFrom) / shareStep - 0.5, 0.0, 30.999);
     int first = int(slice);
-    float solid = mix(share[first], share[first + 1], slice - float(first));
+    // Bright metal that is half there is milk: it ends on a short way.
+    float solid = smoothstep(0.42, 0.58, mix(share[first], share[first + 1], slice - float(first)));
     colour = there * solid * vec4(c, 1.0);
     // What is not seen hides nothing either: depth is written.
     if (colour.a < 0.01) discard;

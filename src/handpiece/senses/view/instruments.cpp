@@ -26,6 +26,8 @@ constexpr float kNearMm = 1.6f;         // beyond that nearness darkens by less 
 constexpr float kSiteMm = 8.0f;
 /// So far above the bur's head a thing begins to hide its work, and so much farther it is glass over all of that place.
 constexpr float kGlassFromMm = 1.0f, kGlassOverMm = 7.0f;
+/// So far above the bur's head its shank begins to go, where the handpiece's head is not drawn; that is about x = 0.
+constexpr float kHeldOverMm = 2.5f, kHeadMm = 4.0f;
 /// Cosines of bur's axis and line of sight between which that place grows until it holds the whole handpiece.
 constexpr float kBeside = 0.70f, kAlong = 0.92f;
 /// Nearer to the eye than these shares of the tip's distance a thing is not shown, or less and less.
@@ -244,25 +246,34 @@ bool Instruments::Sight::isGlass(const PooledMesh& mesh) const {
     return away * eyeMm < site * std::max(0.05f * eyeMm, eyeMm - high + r);
 }
 
+/// How much is drawn of the head that holds the bur; 1 where there is no handpiece to be held by.
+float Instruments::heldShare(const Look& look, const HandpieceFade::Solid& solid) const {
+    if (!look.turbine || turbine_.meshes.empty()) return 1.0f;
+    const float least = solid.between(-kHeadMm, kHeadMm)[0], t = std::clamp((least - 0.42f) / 0.16f, 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
 template <class Found>
 void Instruments::eachSeen(const Culler& culler, const Sight& sight, const HandpieceFade::Solid& solid,
                            const Look& look, const Found& found) const {
     constexpr float kWhole = 0.999f, kNone = 0.01f;
-    // The end of the shank is seen only where the head is glass, or not there.
-    bool endSeen = !look.turbine || turbine_.meshes.empty();
+    // The end of the shank is seen only where there is no handpiece, and ends before it where that is not drawn.
+    const bool endSeen = !look.turbine || turbine_.meshes.empty();
+    const bool isHeld = heldShare(look, solid) > kWhole;
     if (look.turbine)
         for (const PooledMesh& mesh : turbine_.meshes)
             if (culler.mayBeSeen(mesh) && !sight.isGone(mesh)) {
                 const auto [least, most] = solid.between(mesh.minMm.x(), mesh.maxMm.x());
                 const bool isGlass = least < kWhole || sight.isNear(mesh);
-                endSeen = endSeen || isGlass;
                 if (most > kNone) found(mesh, true, isGlass);
             }
     if (!look.bur) return;
+    const float endFromMm = static_cast<float>(headLengthMm_) + kHeldOverMm;
     for (const Solid* one : {&bur_, &shankEnd_}) {
         if (one == &shankEnd_ && !endSeen) break;
         for (const PooledMesh& mesh : one->meshes)
-            if (culler.mayBeSeen(mesh) && !sight.isGone(mesh)) found(mesh, false, sight.isGlass(mesh));
+            if (culler.mayBeSeen(mesh) && !sight.isGone(mesh))
+                found(mesh, false, sight.isGlass(mesh) || (!isHeld && mesh.maxMm.z() > endFromMm));
     }
 }
 
@@ -435,6 +446,8 @@ std::size_t Instruments::draw(Shaders& shaders, const Eye& eye, const Viewport& 
                 program.set("siteMm", sight.siteMm);
                 program.set("glassFrom", sight.fromMm);
                 program.set("glassOver", kGlassOverMm);
+                program.set("heldFrom", static_cast<float>(headLengthMm_) + kHeldOverMm);
+                program.set("heldShare", heldShare(look, solid));
             } else {
                 program.set("share", solid.share.data(), HandpieceFade::kSlices);
                 program.set("shareFrom", solid.fromMm);

@@ -62,6 +62,7 @@ class Instruments {
                   const Found& found) const;
     [[nodiscard]] HandpieceFade::Solid solidOf(const Eye& eyeInBur, const Moment& moment) const;
 
+    [[nodiscard]] float heldShare(const Look& look, const HandpieceFade::Solid& solid) const;
     void prepareBur(gl::Program& program, const Moment& moment) const;
 
     struct Appearance {

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
 #include <tuple>
 #include <unordered_map>
+#include <utility>
 
 namespace handpiece::view {
 namespace {
@@ -35,7 +38,73 @@ Fans fansOf(const geometry::TriangleMesh& mesh) {
     return fans;
 }
 
+constexpr std::size_t kGingivaTriangles = 5000;  ///< lips and cheeks have some dozens
+constexpr float kFarUnderMm = 15.0f;
+
 }  // namespace
+
+std::vector<float> underMarginMm(const geometry::TriangleMesh& gingiva) {
+    const std::size_t count = gingiva.vertices.size();
+    std::vector<float> under(count, 0.0f);
+    if (gingiva.triangles.size() < kGingivaTriangles) return under;
+    const Fans fans = fansOf(gingiva);
+    std::vector<Vec3> normals;
+    normals.reserve(gingiva.triangles.size());
+    for (const geometry::Triangle& t : gingiva.triangles)
+        normals.push_back((gingiva.vertices[t[1]] - gingiva.vertices[t[0]])
+                              .cross(gingiva.vertices[t[2]] - gingiva.vertices[t[0]])
+                              .normalized());
+    // Convex and sharper than any other edge of such a solid.
+    const double sharp = std::cos(0.7);
+    const auto isRim = [&](std::uint32_t v) {
+        for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i)
+            for (std::uint32_t j = i + 1; j < fans.first[v + 1]; ++j) {
+                const std::uint32_t a = fans.triangles[i], b = fans.triangles[j];
+                if (!(normals[a].dot(normals[b]) < sharp)) continue;
+                const geometry::Triangle &one = gingiva.triangles[a], &two = gingiva.triangles[b];
+                int shared = 0;
+                Vec3 beyond = gingiva.vertices[v];
+                for (const std::uint32_t w : two) {
+                    if (std::find(one.begin(), one.end(), w) != one.end())
+                        ++shared;
+                    else
+                        beyond = gingiva.vertices[w];
+                }
+                if (shared == 2 && normals[a].dot(beyond - gingiva.vertices[v]) < 0.0) return true;
+            }
+        return false;
+    };
+    // From vertex to vertex along edges (Dijkstra 1959).
+    using Entry = std::pair<float, std::uint32_t>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
+    std::fill(under.begin(), under.end(), kFarUnderMm);
+    for (std::uint32_t v = 0; v < count; ++v)
+        if (isRim(v)) next.emplace(under[v] = 0.0f, v);
+    if (next.empty()) return std::vector<float>(count, 0.0f);
+    while (!next.empty()) {
+        const auto [so, v] = next.top();
+        next.pop();
+        if (so > under[v]) continue;
+        for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i)
+            for (const std::uint32_t w : gingiva.triangles[fans.triangles[i]]) {
+                const float through = so + static_cast<float>((gingiva.vertices[w] - gingiva.vertices[v]).norm());
+                if (through < under[w]) next.emplace(under[w] = through, w);
+            }
+    }
+    // What is known is not 0; edges zigzag, their way is smoothed as the band that it is.
+    for (int round = 0; round < 3; ++round) {
+        const std::vector<float> rough = under;
+        for (std::uint32_t v = 0; v < count; ++v) {
+            float sum = 0.0f;
+            int n = 0;
+            for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i)
+                for (const std::uint32_t w : gingiva.triangles[fans.triangles[i]])
+                    sum += rough[w], ++n;
+            if (n > 0) under[v] = std::max(0.02f, sum / static_cast<float>(n));
+        }
+    }
+    return under;
+}
 
 MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm) {
     MeshPiece piece;
@@ -53,6 +122,7 @@ MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* remo
 std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissue tissue, double creaseRad,
                                 double cellMm) {
     const Fans fans = fansOf(mesh);
+    const std::vector<float> under = tissue == cases::Tissue::gum ? underMarginMm(mesh) : std::vector<float>();
     std::vector<Vec3> faceNormals;  // as long as twice the area: large faces count for more
     faceNormals.reserve(mesh.triangles.size());
     for (const geometry::Triangle& t : mesh.triangles)
@@ -90,8 +160,8 @@ std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissu
             const auto [it, isNew] =
                 cell.known.try_emplace(identity, static_cast<std::uint16_t>(cell.piece.vertices.size()));
             if (isNew)
-                cell.piece.vertices.push_back(
-                    {floats(mesh.vertices[v]), packed, static_cast<std::uint8_t>(tissue), 0, 0});
+                cell.piece.vertices.push_back({floats(mesh.vertices[v]), packed, static_cast<std::uint8_t>(tissue), 0,
+                                               static_cast<std::uint16_t>(under.empty() ? 0.0f : 1000.0f * under[v])});
             corners[k] = it->second;
         }
         cell.piece.triangles.push_back(corners);

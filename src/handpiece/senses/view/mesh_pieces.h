@@ -15,7 +15,12 @@ namespace handpiece::view {
 /// As it comes from the surface. `removedDepthMm`: by vertex, or null.
 [[nodiscard]] MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm);
 
+/// How far each vertex of a gingiva lies from its margin, along its surface [mm]: the margin is the sharp edge where it
+/// turns into the teeth's sockets. 0 everywhere for what has no such edge, as lips and scans.
+[[nodiscard]] std::vector<float> underMarginMm(const geometry::TriangleMesh& gingiva);
+
 /// Smooth but across edges sharper than `creaseRad`. Cut by a grid of `cellMm` (0: by number of vertices alone).
+/// Vertices of gingiva hold how far they are under its margin where a tooth's hold what was removed.
 [[nodiscard]] std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissue tissue,
                                               double creaseRad, double cellMm);
 

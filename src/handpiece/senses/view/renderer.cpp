@@ -488,11 +488,17 @@ void Renderer::setSectionFace(SectionFace face) {
     state_->context.makeCurrent();
     const auto pixels =
         static_cast<std::size_t>(std::max(0, face.width)) * static_cast<std::size_t>(std::max(0, face.height));
-    if (pixels == 0 || face.tissue.size() != pixels || !(face.mmPerPixel > 0.0))
+    if (pixels == 0 || face.tissue.size() != pixels || (!face.away.empty() && face.away.size() != pixels) ||
+        !(face.mmPerPixel > 0.0))
         throw core::Error("a section's face has no size, or not one tissue a pixel", "section face",
                           "give width x height tissues and a positive size of a pixel");
     Section& section = state_->section;
-    section.tissues.fill(face.width, face.height, GL_R8, GL_RED, GL_UNSIGNED_BYTE, face.tissue.data());
+    constexpr std::uint8_t kHalfPixel = 16;
+    std::vector<std::array<std::uint8_t, 4>> texels(pixels);
+    for (std::size_t i = 0; i < pixels; ++i)
+        texels[i] = {face.tissue[i], face.away.empty() ? kHalfPixel : face.away[i][0],
+                     face.away.empty() ? kHalfPixel : face.away[i][1], 0};
+    section.tissues.fill(face.width, face.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
     section.face = std::move(face);
     ++section.serial;
 }

@@ -35,6 +35,9 @@ struct SectionFace {
     double mmPerPixel = 0.05;
     int width = 0, height = 0;
     std::vector<std::uint8_t> tissue;  ///< cases::Tissue by pixel, none outside the tooth
+    /// By pixel, in 32nds of one: how far it lies from what is of another tissue, and from the tooth's surface; empty:
+    /// boundaries run half way between two pixels.
+    std::vector<std::array<std::uint8_t, 2>> away;
 };
 
 struct MirrorPose {

@@ -20,6 +20,35 @@ constexpr double kBeforeProximalMm = 0.05;
 constexpr float kPatchMm = 2.0f;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
+/// Of an adjacent tooth nothing else is known than its surface: how high each of its vertices lies in the crown goes
+/// where removed depths do, 20 mm for its top, so that its neck is shaded as the worked tooth's is. The long axis is
+/// that along which it is longest; `hangs`: of the other jaw.
+void noteHeights(const geometry::TriangleMesh& mesh, bool hangs, std::vector<MeshPiece>& pieces) {
+    core::Vec3 middle = core::Vec3::Zero();
+    for (const core::Vec3& v : mesh.vertices)
+        middle += v / static_cast<double>(mesh.vertices.size());
+    core::Mat3 spread = core::Mat3::Zero();
+    for (const core::Vec3& v : mesh.vertices)
+        spread += (v - middle) * (v - middle).transpose();
+    core::Vec3 up(0.05, 0.03, 1.0);
+    constexpr int kRounds = 40;  // of power iteration: degrees are enough
+    for (int i = 0; i < kRounds && spread.norm() > 0.0; ++i)
+        up = (spread * up).normalized();
+    constexpr double kLeastUpright = 0.7;  // a crown alone is wider than high
+    if (std::abs(up.z()) < kLeastUpright) up = core::Vec3::UnitZ();
+    if ((up.z() < 0.0) != hangs) up = -up;
+    double topMm = -1e300;
+    for (const core::Vec3& v : mesh.vertices)
+        topMm = std::max(topMm, up.dot(v));
+    for (MeshPiece& piece : pieces)
+        for (GpuVertex& v : piece.vertices) {
+            const core::Vec3 p(static_cast<double>(v.positionMm[0]), static_cast<double>(v.positionMm[1]),
+                               static_cast<double>(v.positionMm[2]));
+            const double share = std::clamp(1.0 - (topMm - up.dot(p)) / kCrownMm, 0.0, 1.0);
+            v.removedUm = static_cast<std::uint16_t>(std::lround(20000.0 * share));
+        }
+}
+
 }  // namespace
 
 void Scene::changeAll() {
@@ -64,6 +93,7 @@ void Scene::setTooth(const core::Box& bounds) {
     teethInBricks_.clear();
     drop(mesh_);
     drop(parts_);
+    overDentine_.set({});
     toothBounds_ = bounds;
     measure();
     changeAll();
@@ -180,7 +210,9 @@ void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cas
     if (box.isEmpty()) return;
     // Small pieces: little is drawn beside the bur while a cut redraws its rectangle.
     const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
-    for (const MeshPiece& piece : piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells)))
+    std::vector<MeshPiece> pieces = piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells));
+    if (tissue == cases::Tissue::neighbour) noteHeights(mesh, box.centre().z() > toothBounds_.max.z(), pieces);
+    for (const MeshPiece& piece : pieces)
         to.push_back({tissue, pool_.add(piece), box, part, false});
 }
 
@@ -207,6 +239,7 @@ void Scene::setParts(std::span<const cases::Part> parts) {
     drop(parts_);
     for (const cases::Part& part : parts)
         add(parts_, part.mesh, part.tissue);
+    overDentine_.set(parts);
     changeAll();
 }
 

@@ -18,6 +18,7 @@
 #include "handpiece/model/case/case.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/mesh_pool.h"
+#include "handpiece/senses/view/over_dentine.h"
 
 namespace handpiece::view {
 
@@ -35,6 +36,7 @@ class Scene {
     [[nodiscard]] const core::Box& toothBounds() const noexcept { return toothBounds_; }
     /// All that may be seen, scenery too.
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
+    [[nodiscard]] const OverDentine& overDentine() const noexcept { return overDentine_; }
     [[nodiscard]] bool hasCoarse() const noexcept { return coarseCount_ > 0; }
 
     /// How far what Detail::near shows may lie from all triangles [mm].
@@ -110,6 +112,7 @@ class Scene {
     std::unordered_map<std::uint32_t, std::uint32_t> slot_;  ///< id -> place in bricks_ (sorted only when asked)
     bool sorted_ = true;
     std::vector<Static> mesh_, scenery_, parts_;
+    OverDentine overDentine_;
     core::Box toothBounds_, bounds_;
     std::vector<Patch> patches_;
     std::map<std::array<int, 4>, std::uint32_t> patchAt_;  ///< by tooth and place

@@ -82,47 +82,59 @@ uniform float mmPerPixel;
 uniform int grid;
 uniform vec2 gridOrigin;
 layout(location = 0) out vec4 surface;
-// The tissue that most of the four around a point are of, weighted as for a linear blend: smooth outlines.
-int tissueAt(vec2 p) {
-    vec2 q = p - 0.5;
-    ivec2 low = ivec2(floor(q));
+// A boundary's line, how much of a pixel it covers: `v` has the signed distances of the four around to the boundary
+// [texels], `half` the line's half width in pixels. Between them distances are linear, and so the line is smooth.
+float lineOver(vec4 v, vec2 f, vec2 dx, vec2 dy, float halfWide) {
+    float here = mix(mix(v.x, v.y, f.x), mix(v.z, v.w, f.x), f.y);
+    vec2 slope = vec2(mix(v.y - v.x, v.w - v.z, f.y), mix(v.z - v.x, v.w - v.y, f.x));
+    return clamp(halfWide + 0.5 - abs(here) / max(1e-4, length(vec2(dot(slope, dx), dot(slope, dy)))), 0.0, 1.0);
+}
+void main() {
+    vec2 dx = dFdx(at), dy = dFdy(at);
+    vec2 q = at - 0.5;
+    ivec2 low = ivec2(floor(q)), last = textureSize(tissues, 0) - 1;
     vec2 f = q - floor(q);
-    ivec2 last = textureSize(tissues, 0) - 1;
     int t[4];
+    vec4 other, outside;
     float w[4];
     for (int i = 0; i < 4; ++i) {
         ivec2 o = ivec2(i & 1, i >> 1);
-        t[i] = int(texelFetch(tissues, clamp(low + o, ivec2(0), last), 0).r * 255.0 + 0.5);
+        vec3 texel = texelFetch(tissues, clamp(low + o, ivec2(0), last), 0).rgb * 255.0;
+        t[i] = int(texel.r + 0.5);
+        other[i] = texel.g / 32.0;
+        outside[i] = texel.b / 32.0;
         w[i] = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y);
     }
-    int best = 0;
+    // The tissue that most of the four are of, each counting for as much as it lies off the boundary: between two
+    // tissues that is on which side of it one is.
+    int kind = 0;
     float most = -1.0;
     for (int i = 0; i < 4; ++i) {
         float sum = 0.0;
-        for (int j = 0; j < 4; ++j) sum += t[j] == t[i] ? w[j] : 0.0;
-        if (sum > most) { most = sum; best = t[i]; }
+        for (int j = 0; j < 4; ++j) sum += t[j] == t[i] ? w[j] * other[j] : 0.0;
+        if (sum > most) { most = sum; kind = t[i]; }
     }
-    return best;
-}
-void main() {
-    int kind = tissueAt(at);
     if (kind == 0 || (visibleTissues >> kind & 1) == 0) discard;
-    vec2 perPixel = vec2(length(vec2(dFdx(at.x), dFdy(at.x))), length(vec2(dFdx(at.y), dFdy(at.y))));
-    // Edges of tissues, and of the tooth, as a line of a pixel.
-    vec2 s = 0.8 * max(perPixel, vec2(0.15));
-    if (tissueAt(at + vec2(s.x, 0.0)) != kind || tissueAt(at + vec2(0.0, s.y)) != kind ||
-        tissueAt(at - vec2(s.x, 0.0)) != kind || tissueAt(at - vec2(0.0, s.y)) != kind)
-        kind = 31;
+    for (int i = 0; i < 4; ++i) {
+        other[i] *= t[i] == kind ? 1.0 : -1.0;
+        outside[i] *= t[i] != 0 ? 1.0 : -1.0;
+    }
+    // Of the tooth's outline only the inner half is there to be drawn.
+    float line = max(lineOver(other, f, dx, dy, 0.8), lineOver(outside, f, dx, dy, 1.4)), grey = 0.0;
     if (grid != 0) {
+        vec2 perPixel = vec2(length(vec2(dx.x, dy.x)), length(vec2(dx.y, dy.y)));
         vec2 mm = (at - 0.5) * mmPerPixel + gridOrigin;
         vec2 away = abs(mm - round(mm)) / (perPixel * mmPerPixel);
-        if (min(away.x, away.y) < 0.55) kind = 30;
+        grey = clamp(1.0 - min(away.x, away.y), 0.0, 1.0);
     }
-    surface = vec4(0.5, 0.5, 0.5, float(kind) * 2048.0 / 65535.0);
+    surface = vec4(0.5, 0.5, 0.5,
+                   (float(kind) * 2048.0 + 1024.0 + 32.0 * floor(31.0 * line + 0.5) + floor(31.0 * grey + 0.5)) / 65535.0);
 }
 )";
 
-// Alchemy ambient occlusion (McGuire, Osman, Bukowski, Hennessy 2011) on a spiral, at half the resolution.
+// Alchemy ambient occlusion (McGuire, Osman, Bukowski, Hennessy 2011) on a spiral, and what stands between a place and
+// the lamp, found by walking towards it over the depths: a cavity's walls throw their shadow on its floor. At half the
+// resolution.
 constexpr const char* kOcclusionFragment = R"(
 uniform sampler2D surface;
 uniform sampler2D depth;
@@ -134,17 +146,20 @@ uniform float pixelsPerMm;  // at unit depth
 uniform float mostPixels;
 uniform int samples;
 uniform float turns;
+uniform vec3 lamp;      // as the eye has it
+uniform int shadowSteps;
+uniform float shadowMm;
 layout(location = 0) out vec4 result;
 float eyeDepth(ivec2 p) { return depthTerms.y / (2.0 * texelFetch(depth, p, 0).r - 1.0 + depthTerms.x); }
 void main() {
     ivec2 last = textureSize(depth, 0) - 1;
     ivec2 p = min(2 * ivec2(gl_FragCoord.xy), last);
     float d = texelFetch(depth, p, 0).r;
-    if (d >= 1.0) { result = vec4(1.0, 60000.0, 0.0, 0.0); return; }
+    if (d >= 1.0) { result = vec4(1.0, 60000.0, 1.0, 0.0); return; }
     float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
     vec3 c = vec3((vec2(p) + 0.5) * unproject.xy + unproject.zw, -1.0) * z;
     vec3 n = texelFetch(surface, p, 0).xyz * 2.0 - 1.0;
-    float open = 1.0;
+    float open = 1.0, lit = 1.0;
     if (dot(n, n) > 0.1) {
         n = toEye * normalize(n);
         float r2 = radiusMm * radiusMm;
@@ -166,8 +181,20 @@ void main() {
             sum += fall * fall * max(0.0, vn) * inversesqrt(vv + 1e-4);
         }
         open = max(0.0, 1.0 - 2.6 * sum / float(samples));
+        float farMm = min(shadowMm, mostPixels * z / (pixelsPerMm * max(0.2, length(lamp.xy))));
+        int steps = dot(n, lamp) > -0.2 ? shadowSteps : 0;  // turned away it is dark already
+        for (int i = 0; i < steps; ++i) {
+            float share = (float(i) + 0.25 + 0.0625 * float(index)) / float(steps);
+            float t = farMm * share * (0.4 + 0.6 * share);
+            vec3 q = c + 0.05 * n + t * lamp;
+            ivec2 s = clamp(ivec2((q.xy / -q.z - unproject.zw) / unproject.xy), ivec2(0), last);
+            // Before that place by how much: far before it is something else, which one would see past.
+            float over = -q.z - eyeDepth(s) - 0.02 * t - 0.0012 * z;
+            float hides = smoothstep(0.0, 0.05 + 0.25 * t, over) * (1.0 - smoothstep(1.5, 3.5, over));
+            lit = min(lit, 1.0 - hides * (1.0 - 0.6 * share * share));
+        }
     }
-    result = vec4(open, z, 0.0, 0.0);
+    result = vec4(open, z, lit, 0.0);
 }
 )";
 
@@ -177,18 +204,19 @@ layout(location = 0) out vec4 result;
 void main() {
     ivec2 last = textureSize(occlusion, 0) - 1;
     ivec2 p = ivec2(gl_FragCoord.xy);
-    vec2 middle = texelFetch(occlusion, p, 0).rg;
-    float sum = 0.0, weights = 1e-4;
+    float middle = texelFetch(occlusion, p, 0).g;
+    vec2 sum = vec2(0.0);
+    float weights = 1e-4;
     // A software renderer ends a loop early where none of its pixels goes on: in the background.
-    int end = middle.g < 50000.0 ? 2 : -2;
+    int end = middle < 50000.0 ? 2 : -2;
     for (int y = -2; y < end; ++y)
         for (int x = -2; x < 2; ++x) {
-            vec2 s = texelFetch(occlusion, clamp(p + ivec2(x, y), ivec2(0), last), 0).rg;
-            float w = max(0.0, 1.0 - abs(s.g - middle.g) * 3.0) + 1e-5;
-            sum += s.r * w;
+            vec3 s = texelFetch(occlusion, clamp(p + ivec2(x, y), ivec2(0), last), 0).rgb;
+            float w = max(0.0, 1.0 - abs(s.g - middle) * 3.0) + 1e-5;
+            sum += s.rb * w;
             weights += w;
         }
-    result = vec4(sum / weights, middle.g, 0.0, 0.0);
+    result = vec4(sum.x / weights, middle, sum.y / weights, 0.0);
 }
 )";
 
@@ -214,12 +242,15 @@ uniform sampler2D occlusion;
 uniform sampler2D depthScale;
 uniform mat4 toTooth;   // from NDC
 uniform vec2 depthTerms;
-uniform vec3 eye, lamp, eyeUp, eyeRight;
+uniform vec3 eye, lamp, sky, eyeRight;
 uniform vec3 palette[32];   // linear
 uniform vec4 material[32];  // wrap, gloss, sharpness of it, how far light goes under
 uniform float wet;
 uniform int natural;
 uniform vec2 crown;         // where it begins and ends along z
+uniform int hasDentine;     // how far it lies is known
+uniform sampler2D dentineTiles;
+uniform vec3 dentineLow, perDentine;
 uniform int removedColours;
 uniform float removedMost;
 uniform int bleedings;
@@ -229,6 +260,15 @@ uniform sampler2DShadow shadowMap;
 uniform mat4 toShadow;
 #endif
 out vec4 colour;
+// From the dentine [mm], between the two layers that it lies in.
+float overDentine(vec3 p) {
+    vec3 q = clamp((p - dentineLow) * perDentine, vec3(0.0), vec3(22.999));
+    float low = floor(q.z);
+    vec2 a = vec2(mod(low, 6.0), floor(low / 6.0)), b = vec2(mod(low + 1.0, 6.0), floor((low + 1.0) / 6.0));
+    const vec2 size = vec2(144.0, 96.0);
+    return 2.55 * mix(texture(dentineTiles, (a * 24.0 + q.xy + 0.5) / size).r,
+                      texture(dentineTiles, (b * 24.0 + q.xy + 0.5) / size).r, q.z - low);
+}
 #ifdef FINE
 float hash(vec3 p) {
     p = fract(p * 0.3183099 + 0.1);
@@ -241,7 +281,30 @@ float noise(vec3 x) {
     return mix(mix(mix(hash(i), hash(i + vec3(1, 0, 0)), f.x), mix(hash(i + vec3(0, 1, 0)), hash(i + vec3(1, 1, 0)), f.x), f.y),
                mix(mix(hash(i + vec3(0, 0, 1)), hash(i + vec3(1, 0, 1)), f.x), mix(hash(i + vec3(0, 1, 1)), hash(i + vec3(1, 1, 1)), f.x), f.y), f.z);
 }
+// Pits of attached gingiva, about a millimetre apart.
+float pit(vec3 p) { return smoothstep(0.50, 0.78, noise(p)); }
 #endif
+// Gingiva by how far under its margin it lies [mm], 0 where nobody knows: its free edge is smooth and pale, the attached
+// part stippled like an orange, mucosa under it darker, redder, thin and wet.
+void gum(float under, vec3 at, inout vec3 albedo, inout vec3 n, inout vec4 m) {
+    if (under <= 0.0) return;
+    float mucosa = smoothstep(6.2, 8.2, under);
+    float attached = smoothstep(1.2, 2.2, under) * (1.0 - mucosa);
+    albedo *= mix(vec3(1.0), vec3(1.06, 1.10, 1.08), attached);
+    albedo *= mix(vec3(1.0), vec3(0.86, 0.60, 0.62), mucosa);
+    m.y *= mix(1.0, 0.75, attached) * mix(1.0, 1.15, mucosa);
+#ifdef FINE
+    if (attached > 0.0) {
+        vec3 p = at * 1.9;
+        float here = pit(p);
+        const float apart = 0.12;
+        vec3 slope = vec3(pit(p + vec3(apart, 0, 0)), pit(p + vec3(0, apart, 0)), pit(p + vec3(0, 0, apart))) - here;
+        slope -= dot(slope, n) * n;
+        n = normalize(n + attached * 0.085 / apart * slope);
+        albedo *= 1.0 - 0.05 * attached * here;
+    }
+#endif
+}
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     float d = texelFetch(depth, p, 0).r;
@@ -252,8 +315,13 @@ void main() {
     vec3 n = g.xyz * 2.0 - 1.0;
     vec3 albedo = palette[kind];
     if (dot(n, n) < 0.1) {  // a section's face: as a drawing
-        float tone = code - float(kind) * 2048.0 > 0.5 ? 0.55 : 0.92;
-        colour = vec4(pow(albedo * tone, vec3(1.0 / 2.2)), 1.0);
+        float low = code - float(kind) * 2048.0;
+        vec3 face = albedo * (low == 1.0 ? 0.55 : 0.92);
+        if (low >= 1024.0) {
+            face = mix(face, palette[30] * 0.92, mod(low, 32.0) / 31.0);
+            face = mix(face, palette[31] * 0.92, floor((low - 1024.0) / 32.0) / 31.0);
+        }
+        colour = vec4(pow(face, vec3(1.0 / 2.2)), 1.0);
         return;
     }
     n = normalize(n);
@@ -263,34 +331,40 @@ void main() {
     if (kind == 29) n = dot(n, v) < 0.0 ? -n : n;
     float nv = clamp(dot(n, v), 0.0, 1.0);
 
-    float open = 1.0;
+    float open = 1.0, lit = 1.0;
     {
         // From half resolution, without mixing near and far.
         float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
         vec2 q = 0.5 * gl_FragCoord.xy - 0.25;
         ivec2 low = max(ivec2(floor(q)), ivec2(0)), last = textureSize(occlusion, 0) - 1;
         vec2 f = fract(q);
-        float sum = 0.0, weights = 0.0;
+        vec2 sum = vec2(0.0);
+        float weights = 0.0;
         for (int i = 0; i < 4; ++i) {
             ivec2 o = ivec2(i & 1, i >> 1);
-            vec2 s = texelFetch(occlusion, min(low + o, last), 0).rg;
+            vec3 s = texelFetch(occlusion, min(low + o, last), 0).rgb;
             float w = (o.x == 1 ? f.x : 1.0 - f.x) * (o.y == 1 ? f.y : 1.0 - f.y) + 0.01;
             w *= max(0.0, 1.0 - abs(s.g - z) * 2.0) + 1e-4;
-            sum += s.r * w;
+            sum += s.rb * w;
             weights += w;
         }
-        open = sum / weights;
+        open = sum.x / weights;
+        lit = sum.y / weights;
     }
 
     vec4 m = material[kind];
     bool isTooth = kind == 1 || kind == 8;
     if (natural != 0) {
         if (isTooth) {
-            // Warmer and darker towards the neck, where dentine shines through; greyer and bluer at the tips.
-            float up = kind == 8 ? 0.7 : clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
-            albedo *= mix(vec3(0.93, 0.79, 0.58), vec3(1.0), smoothstep(0.0, 0.65, up));
-            float tip = smoothstep(0.72, 1.0, up) * (0.35 + 0.65 * (1.0 - nv));
-            albedo *= mix(vec3(1.0), vec3(0.93, 0.965, 1.0), tip);
+            // Enamel is clear: where it is thin dentine shines through it, where it is thick and nothing lies behind it
+            // is greyer and bluer. Where no dentine is known, by the height in the crown.
+            float up = kind == 8 ? min(1.0, (code - 16384.0) / 2000.0)
+                                 : clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
+            float mm = kind == 1 && hasDentine != 0 ? overDentine(at)
+                                                    : 0.12 + 0.95 * smoothstep(0.0, 0.55, up) + 0.5 * smoothstep(0.75, 1.0, up);
+            albedo *= mix(vec3(1.0), vec3(0.93, 0.77, 0.53), exp2(-2.4 * mm));
+            float clear = smoothstep(1.1, 2.0, mm) * (0.30 + 0.70 * (1.0 - nv));
+            albedo *= mix(vec3(1.0), vec3(0.84, 0.89, 0.94), clear);
             // What stays in fissures.
             float deep = clamp(1.0 - open, 0.0, 1.0);
             albedo *= mix(vec3(1.0), vec3(0.70, 0.52, 0.33), smoothstep(0.22, 0.85, deep) * 0.9);
@@ -310,7 +384,10 @@ void main() {
 #else
         float grain = 0.5;
 #endif
-        if (kind == 6) albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
+        if (kind == 6) {
+            albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
+            gum((code - float(kind) * 2048.0) * 0.01, at, albedo, n, m);
+        }
     }
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
         albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
@@ -327,7 +404,6 @@ void main() {
     float nl = dot(n, lamp);
     vec3 wrap = m.x * vec3(1.25, 1.0, 0.8);
     vec3 key = max(vec3(0.0), (nl + wrap) / (1.0 + wrap));
-    float lit = 1.0;
 #ifdef SHADOWS
     vec4 s = toShadow * vec4(at + n * 0.06, 1.0);
     float sum = 0.0;
@@ -336,11 +412,11 @@ void main() {
         vec2 o = vec2(float(i & 3), float(i >> 2)) - 1.5;
         sum += texture(shadowMap, vec3(s.xy + o * texel, s.z));
     }
-    lit = sum / 16.0;
+    lit = min(lit, sum / 16.0);
 #endif
     key *= mix(vec3(0.16, 0.12, 0.10) * m.w + 0.04, vec3(1.0), lit);
-    float sky = 0.5 + 0.5 * dot(n, eyeUp);
-    vec3 side = normalize(0.85 * eyeRight + 0.25 * eyeUp + 0.35 * v);
+    float skyward = 0.5 + 0.5 * dot(n, sky);
+    vec3 side = normalize(0.85 * eyeRight + 0.25 * sky + 0.35 * v);
     float fill = max(0.0, 0.25 + 0.75 * dot(n, side));
     // Light that goes to and fro in a hollow takes up the colour of its walls.
     vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
@@ -348,8 +424,8 @@ void main() {
     vec3 openColour = mix(vec3(open), max(vec3(open), ((open * a + b) * open + c) * open), 0.5);
     vec3 keyOpen = mix(vec3(1.0), openColour, 0.7);
     vec3 light = key * keyOpen * vec3(1.62, 1.56, 1.46) +
-                 (mix(vec3(0.17, 0.15, 0.15), vec3(0.42, 0.46, 0.52), sky) + fill * vec3(0.20, 0.23, 0.28)) * openColour;
-    vec3 sum3 = albedo * light * 0.62;
+                 (mix(vec3(0.17, 0.15, 0.15), vec3(0.42, 0.46, 0.52), skyward) + fill * vec3(0.20, 0.23, 0.28)) * openColour;
+    vec3 sum3 = albedo * light * 0.44;
     // Seen along the surface, enamel lets light of the other side through.
     float rim = (1.0 - nv) * (1.0 - nv);
     sum3 += albedo * m.w * rim * rim * vec3(0.10, 0.13, 0.17) * open;
@@ -360,13 +436,26 @@ void main() {
     vec3 r = reflect(-v, n);
     float gloss = m.y * mix(0.45, 1.0, wet);
     float sharp = m.z * mix(0.35, 1.0, wet);
-    float spark = exp(sharp * 14.0 * (nh - 1.0)) * 0.16 + wet * exp(sharp * 110.0 * (nh - 1.0)) * 0.95;
+    // Where the surface turns within a pixel a spark is as wide as the turn, and so much the fainter (after Tokuyoshi &
+    // Kaplanyan 2019): the floor of a fissure is no row of dots.
+    float turn = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        ivec2 o = (i & 2) * ivec2(i & 1, 1 - (i & 1)) - ivec2(i & 1, 1 - (i & 1));
+        vec3 beside = texelFetch(surface, clamp(p + o, ivec2(0), textureSize(surface, 0) - 1), 0).xyz * 2.0 - 1.0 - n;
+        turn += 0.25 * dot(beside, beside);
+    }
+    vec2 lobe = sharp * vec2(14.0, 110.0), width = 1.0 / (1.0 + turn * lobe);
+    lobe *= width;
+    float spark = width.x * exp(lobe.x * (nh - 1.0)) * 0.16 + wet * width.y * exp(lobe.y * (nh - 1.0)) * 0.95;
     float window = smoothstep(0.72, 0.93, dot(r, side)) * 0.30;
-    float above = smoothstep(-0.3, 0.9, dot(r, eyeUp));
+    float above = smoothstep(-0.3, 0.9, dot(r, sky));
     float shade = clamp(open * 1.3 - 0.2, 0.0, 1.0);
     sum3 += gloss * shade * (spark * max(0.0, min(1.0, 4.0 * nl + 0.2)) * lit * vec3(1.0, 0.98, 0.94) +
              fresnel * (window + above * 0.38 + 0.05) * vec3(0.86, 0.94, 1.0) * (0.55 + 0.9 * wet));
-    sum3 = sum3 * (1.0 + sum3 * 0.10) / (1.0 + 0.22 * sum3);
+    // As film takes it (K. Narkowicz's fit of ACES, 2016), by the brightness, so that hues stay: brighter than white rolls
+    // off, and enamel under the lamp lies well below that.
+    float bright = dot(sum3, vec3(0.2126, 0.7152, 0.0722)) + 1e-4;
+    sum3 *= (2.51 * bright + 0.03) / (bright * (2.43 * bright + 0.59) + 0.14);
     // As pow(sum3, 1 / 2.2) to a step of 255, at a part of its cost.
     sum3 = clamp(sum3, 0.0, 1.0);
     vec3 root = sqrt(sum3);
@@ -397,7 +486,7 @@ void main() {
     vec3 far = 0.5 * near + 0.25 * (texture(picture, uv - 0.5 * along).rgb + texture(picture, uv + 0.5 * along).rgb);
     float f = dot(far, weights);
     vec3 result = f < low || f > high ? near : far;
-    colour = vec4(high - low < max(0.03, high * 0.08) ? middle : result, 1.0);
+    colour = vec4(high - low < max(0.0153, high * 0.0313) ? middle : result, 1.0);
 }
 )";
 

@@ -15,8 +15,9 @@ namespace {
 constexpr std::size_t kRowsAtOnce = 16;
 /// Of brightness, in 16ths.
 constexpr std::uint32_t kRed = 5, kGreen = 9, kBlue = 2;
-/// Brightness may differ by less than this, or by less than a 13th, without being an edge.
-constexpr int kLeastContrast = 8;
+/// Brightness may differ by less than this, or by less than a 32nd, without being an edge: the rim of a cut in enamel
+/// differs by little from what lies beside it.
+constexpr int kLeastContrast = 4;
 constexpr float kMostPixels = 6.0f;
 constexpr std::uint64_t kLanes = 0x00ff00ff00ff00ffull;
 
@@ -94,7 +95,7 @@ void findEdges(const std::uint8_t* above, const std::uint8_t* here, const std::u
         const std::uint8_t high =
             std::max(std::max(std::max(above[i], above[i + 2]), std::max(below[i], below[i + 2])), here[i + 1]);
         const auto contrast = static_cast<std::uint8_t>(high - low);
-        const auto least = static_cast<std::uint8_t>((high >> 4) + (high >> 6));
+        const auto least = static_cast<std::uint8_t>(high >> 5);
         isEdge[i] = contrast >= std::max<std::uint8_t>(least, kLeastContrast) ? 1 : 0;
     }
 }

@@ -13,7 +13,7 @@ using gl::Vec2f;
 using gl::Vec3f;
 using gl::Vec4f;
 
-constexpr float kOcclusionMm = 1.5f;
+constexpr float kOcclusionMm = 1.5f, kShadowMm = 4.0f;
 constexpr int kShadowMapSize = 2048;
 // A strip is higher than occlusion reaches: its neighbours are put right by the one after it.
 constexpr int kStrips = 8, kMinRows = 112;
@@ -68,7 +68,7 @@ std::array<Vec4f, kKinds> materials() {
     const auto set = [&](cases::Tissue tissue, const Vec4f& value) { m[static_cast<std::size_t>(tissue)] = value; };
     set(cases::Tissue::none, {0.22f, 0.6f, 1.3f, 0.5f});
     set(cases::Tissue::enamel, {0.22f, 0.85f, 1.6f, 1.0f});
-    set(cases::Tissue::neighbour, {0.22f, 0.80f, 1.5f, 1.0f});
+    set(cases::Tissue::neighbour, {0.22f, 0.85f, 1.6f, 1.0f});
     set(cases::Tissue::dentine, {0.12f, 0.38f, 0.8f, 0.4f});
     set(cases::Tissue::cementum, {0.12f, 0.35f, 0.7f, 0.3f});
     set(cases::Tissue::pulp, {0.30f, 0.75f, 1.2f, 0.8f});
@@ -106,7 +106,11 @@ std::array<Vec3f, kKinds> palette(Palette which) {
 Lighting lightingOf(const Camera& camera) {
     // The lamp stands where it stands, mirror or not.
     const core::Vec3 back = -camera.forward(), up = camera.upward(), right = back.cross(-up);
-    return {(0.80 * back + 0.52 * up - 0.42 * right).normalized().cast<float>(), up.cast<float>(), right.cast<float>()};
+    // Where the crown hangs the light comes from below: a lamp over a chair is turned to shine into the mouth.
+    const double hangs = std::clamp((-up.z() - 0.05) / 0.45, 0.0, 1.0),
+                 way = 1.0 - 2.0 * hangs * hangs * (3.0 - 2.0 * hangs);
+    return {(0.80 * back + 0.52 * way * up - 0.42 * right).normalized().cast<float>(), up.cast<float>(),
+            (way * up).cast<float>(), right.cast<float>()};
 }
 
 std::optional<Vec3f> eyeToSee(const Eye& eye) {
@@ -126,8 +130,8 @@ void ToothLayer::allocate(const Viewport& viewport) {
     surface_.allocate(w, h, GL_RGBA16);
     depth_.allocate(w, h, GL_DEPTH_COMPONENT24);
     colour_.allocate(w, h, GL_RGBA8, true);
-    occlusion_.allocate(w2, h2, GL_RG16F);
-    blurred_.allocate(w2, h2, GL_RG16F);
+    occlusion_.allocate(w2, h2, GL_RGBA16F);
+    blurred_.allocate(w2, h2, GL_RGBA16F);
     geometry_.attach({&surface_}, &depth_);
     litDepth_.allocate(w, h, GL_DEPTH_COMPONENT24);
     lit_.attach({&colour_}, &litDepth_);
@@ -317,6 +321,9 @@ void ToothLayer::drawOcclusion(Shaders& shaders, const LayerWants& wants, const 
     const int samples = wants.look.quality == Quality::rich ? 24 : many ? 14 : 9;
     program.set("samples", coarse ? 6 : samples);
     program.set("turns", coarse ? 9.0f : 16.0f);
+    program.set("lamp", gl::Vec3f(wants.eye.view.topLeftCorner<3, 3>() * wants.lighting.lamp));
+    program.set("shadowMm", kShadowMm);
+    program.set("shadowSteps", !wants.look.shadows ? 0 : coarse ? 4 : wants.look.quality == Quality::fast ? 6 : 10);
     gl::drawFullScreen();
 
     blurredTarget_.bind();
@@ -444,7 +451,7 @@ void ToothLayer::drawLight(Shaders& shaders, const Scene& scene, const gl::Textu
     light.set("depthTerms", Vec2f(p(2, 2), p(2, 3)));
     light.set("eye", wants.eye.positionMm);
     light.set("lamp", wants.lighting.lamp);
-    light.set("eyeUp", wants.lighting.up);
+    light.set("sky", wants.lighting.sky);
     light.set("eyeRight", wants.lighting.right);
     const auto colours = palette(look.palette);
     light.set("palette", colours.data(), kKinds);
@@ -452,6 +459,7 @@ void ToothLayer::drawLight(Shaders& shaders, const Scene& scene, const gl::Textu
     light.set("material", kMaterials.data(), kKinds);
     light.set("wet", look.wet ? 1.0f : 0.0f);
     light.set("natural", look.palette == Palette::natural && !look.removedDepthColours ? 1 : 0);
+    scene.overDentine().give(light, 5);
     const core::Box& box = scene.toothBounds();
     const double top = box.isEmpty() ? 0.0 : box.max.z();
     light.set("crown", Vec2f(static_cast<float>(top - kCrownMm), static_cast<float>(top)));

@@ -14,11 +14,13 @@ namespace handpiece::view {
 
 /// The lamp and what shines besides, tooth frame; of the picture's own camera, also in a mirror.
 struct Lighting {
-    gl::Vec3f lamp = gl::Vec3f::UnitZ(), up = gl::Vec3f::UnitZ(), right = gl::Vec3f::UnitX();
+    gl::Vec3f lamp = gl::Vec3f::UnitZ(), up = gl::Vec3f::UnitZ();
+    gl::Vec3f sky = gl::Vec3f::UnitZ();  ///< from where it is bright all over; shorter, where from nowhere more
+    gl::Vec3f right = gl::Vec3f::UnitX();
     friend bool operator==(const Lighting&, const Lighting&) = default;
 };
-/// As over a dental chair: above the eye, a little to its left, so that what stands over the tooth throws its shadow
-/// where it is seen.
+/// As over a dental chair: above the eye (of an upper crown that hangs, below it), a little to its left, so that what
+/// stands over the tooth throws its shadow where it is seen.
 [[nodiscard]] Lighting lightingOf(const Camera& camera);
 
 /// From where teeth may be in the way (Scene::inTheWay): not from a mirror's, which shows the mouth as it is.

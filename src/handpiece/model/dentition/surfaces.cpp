@@ -30,7 +30,7 @@ constexpr int kCurvePieces = 6;
 /// Between the nodes of a field of unevenness; every second one has the longer waves.
 constexpr double kNodesMm = 1.0;
 /// Beyond this from the surface what is carved into it counts no more.
-constexpr double kFarMm = 1.6;
+constexpr double kGroovesToMm = 1.6;
 /// The finer unevenness: its share of the other, and its waves [mm], as on two real molars (docs/anatomy.md). They run
 /// around the crown.
 constexpr double kFineShare = 0.14, kFineAcrossMm = 0.34, kFineUpMm = 0.22;
@@ -483,7 +483,7 @@ double Anatomy::step(double above) const {
 double Anatomy::outer(const Vec3& p) const {
     const double value = body(p);
     // Far from the surface grooves move nothing.
-    return value - step(aboveCervix(p)) + (std::abs(value) < kFarMm ? grooveDepth(p) : 0.0);
+    return value - step(aboveCervix(p)) + (std::abs(value) < kGroovesToMm ? grooveDepth(p) : 0.0);
 }
 
 double Anatomy::core(const Vec3& p, double bodyValue) const {

@@ -188,6 +188,7 @@ void main() {
             float t = farMm * share * (0.4 + 0.6 * share);
             vec3 q = c + 0.05 * n + t * lamp;
             ivec2 s = clamp(ivec2((q.xy / -q.z - unproject.zw) / unproject.xy), ivec2(0), last);
+            if (max(abs(s.x - p.x), abs(s.y - p.y)) > int(mostPixels)) break;  // what is farther off is not drawn anew
             // Before that place by how much: far before it is something else, which one would see past.
             float over = -q.z - eyeDepth(s) - 0.02 * t - 0.0012 * z;
             float hides = smoothstep(0.0, 0.05 + 0.25 * t, over) * (1.0 - smoothstep(1.5, 3.5, over));
@@ -441,8 +442,9 @@ void main() {
     float turn = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 o = (i & 2) * ivec2(i & 1, 1 - (i & 1)) - ivec2(i & 1, 1 - (i & 1));
-        vec3 beside = texelFetch(surface, clamp(p + o, ivec2(0), textureSize(surface, 0) - 1), 0).xyz * 2.0 - 1.0 - n;
-        turn += 0.25 * dot(beside, beside);
+        vec3 beside = texelFetch(surface, clamp(p + o, ivec2(0), textureSize(surface, 0) - 1), 0).xyz * 2.0 - 1.0;
+        float isThere = abs(dot(beside, beside) - 1.0) < 0.5 ? 0.25 : 0.0;  // no background, no section's face
+        turn += isThere * dot(beside - n, beside - n);
     }
     vec2 lobe = sharp * vec2(14.0, 110.0), width = 1.0 / (1.0 + turn * lobe);
     lobe *= width;

@@ -240,7 +240,8 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
     geometry_.bind();
     setScissor(rect);
     glEnable(GL_DEPTH_TEST);
-    glClear(GL_DEPTH_BUFFER_BIT);
+    glClearColor(1.0f, 1.0f, 1.0f, 1.0f);  // no normal
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     // The inside can be seen where something is cut away or left out.
     const bool open = look.cutAway.has_value() || visibleBits(look) != (1 << cases::kTissueCount) - 1;
     const Scene::InTheWay out = scene.inTheWay(eyeToSee(wants.eye));

@@ -9,6 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/inspect.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "support/random.h"
 
 namespace handpiece::geometry {
@@ -158,6 +159,25 @@ TEST(Decimate, GivesTheSameBytesAtAnyThreadCount) {
     EXPECT_EQ(
         std::memcmp(one.mesh.vertices.data(), three.mesh.vertices.data(), one.mesh.vertices.size() * sizeof(Vec3)), 0);
     EXPECT_EQ(one.errorBoundMm, three.errorBoundMm);
+}
+
+TEST(Decimate, SheetsThatLieCloseDoNotComeToCross) {
+    // A hollow ball, its wall thin on one side.
+    TriangleMesh shell = sphereMesh(Vec3::Zero(), 2.0, 48);
+    const TriangleMesh inside = sphereMesh(Vec3(0.25, 0.0, 0.0), 1.742, 40);
+    const auto first = static_cast<std::uint32_t>(shell.vertices.size());
+    shell.vertices.insert(shell.vertices.end(), inside.vertices.begin(), inside.vertices.end());
+    for (const Triangle& t : inside.triangles)
+        shell.triangles.push_back({first + t[0], first + t[2], first + t[1]});
+    ASSERT_TRUE(selfIntersections(shell).empty());
+    constexpr std::size_t kFaces = 500;
+    EXPECT_FALSE(selfIntersections(decimate(shell, kFaces).mesh).empty()) << "nothing to be avoided";
+    const std::optional<TriangleMesh> made = decimateUncrossed(shell, kFaces, 0.6);
+    ASSERT_TRUE(made);
+    EXPECT_LT(made->triangles.size(), shell.triangles.size() / 2);
+    EXPECT_TRUE(selfIntersections(*made).empty());
+    EXPECT_TRUE(inspect(*made).closed());
+    EXPECT_EQ(inspect(*made).shells, 2u);
 }
 
 TEST(Decimate, RefusesWhatIsNotASurface) {

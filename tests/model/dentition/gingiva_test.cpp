@@ -104,7 +104,8 @@ Looks lookAt(const Mouth& m, const Held& h) {
     const geometry::MeshReport report = geometry::inspect(mesh);
     looks.isClosed = report.closed() && report.oriented() && report.nonManifoldVertices == 0;
     looks.isOneShell = report.shells == 1;
-    looks.crosses = !geometry::selfIntersections(mesh, 1).empty();
+    looks.crosses =
+        !geometry::selfIntersections(mesh, 1).empty() || !geometry::selfIntersections(h.tissues.bone, 1).empty();
     const TriangleTree gingiva(mesh);
     for (const std::size_t i : h.order)
         for (const double side : {1.0, -1.0}) {

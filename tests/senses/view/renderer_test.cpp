@@ -217,8 +217,7 @@ TEST(Renderer, TheNearerSurfaceHides) {
     renderer.updateBricks(bricks, true);
     const Camera camera = above();
     const Image image = picture(renderer, camera, plainLook(), withoutBur());
-    EXPECT_LT(brightness(at(image, camera, {-2.0, 0.0, 2.0})), 330);
-    EXPECT_GT(brightness(at(image, camera, {2.0, 0.0, 0.0})), 330);
+    EXPECT_LT(brightness(at(image, camera, {-2.0, 0.0, 2.0})) + 150, brightness(at(image, camera, {2.0, 0.0, 0.0})));
 }
 
 TEST(Renderer, TheBurIsBeforeTheToothAndBehindIt) {
@@ -311,7 +310,7 @@ TEST(Renderer, TheHandpieceTurnsToGlassSmoothly) {
     camera.targetMm = {0.0, 0.0, 6.0};
     Image last, image;
     double most = 0.0, all = 0.0;
-    constexpr int kSteps = 270;
+    constexpr int kSteps = 300;
     for (int i = 0; i <= kSteps; ++i) {
         const double angle = 0.5 * std::numbers::pi * i / kSteps;
         camera.eyeMm = camera.targetMm + 45.0 * Vec3(0.02, -std::cos(angle), std::sin(angle));
@@ -656,6 +655,7 @@ TEST(Renderer, ACutAwayEndsAtItsPlaneAndShowsTheSectionsFace) {
 TEST(Renderer, ASectionsOutlinesAreSmoothAndUnbroken) {
     // Dentine in enamel, both round: 20 pixels a millimetre of the picture, as many of the face.
     constexpr double kOuterMm = 4.03, kInnerMm = 2.47, kPixelMm = 0.05;
+    constexpr double kLine = 400.0;  // darker than dentine's face
     SectionFace face;
     face.plane = {Vec3::UnitZ(), 0.0};
     face.originMm = {-5.0, -5.0, 0.0};
@@ -694,11 +694,11 @@ TEST(Renderer, ASectionsOutlinesAreSmoothAndUnbroken) {
                 if (radius == kOuterMm && off > -0.025) break;  // the background is dark too
                 const int here = brightness(at(image, camera, {r * std::cos(angle), r * std::sin(angle), 0.0}, kLarge));
                 darkest = std::min(darkest, 1.0 * here);
-                const double weight = std::max(0.0, 330.0 - here);
+                const double weight = std::max(0.0, kLine - here);
                 sum += weight * off;
                 weights += weight;
             }
-            EXPECT_LT(darkest, 330.0) << "at " << i / 2 << " degrees";
+            EXPECT_LT(darkest, kLine) << "at " << i / 2 << " degrees";
             if (weights > 0.0) found.push_back(std::abs(sum / weights - (radius == kOuterMm ? -0.035 : 0.0)));
         }
         std::sort(found.begin(), found.end());

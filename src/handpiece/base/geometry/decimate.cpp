@@ -11,6 +11,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/point_triangle.h"
+#include "handpiece/base/geometry/self_intersection.h"
 
 namespace handpiece::geometry {
 namespace {
@@ -136,8 +137,11 @@ class CandidateQueue {
 
 class Collapser {
   public:
-    explicit Collapser(const TriangleMesh& mesh)
-        : given_(mesh), origin_(mesh.vertices.empty() ? Vec3::Zero() : mesh.bounds().centre()) {
+    /// `isHeld`, by vertex: stays where it is; empty: none does.
+    explicit Collapser(const TriangleMesh& mesh, std::vector<std::uint8_t> isHeld = {})
+        : given_(mesh),
+          isHeld_(std::move(isHeld)),
+          origin_(mesh.vertices.empty() ? Vec3::Zero() : mesh.bounds().centre()) {
         const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
         // About the middle: quadrics hold products of coordinates, and a tooth may lie far from the origin.
         position_.reserve(vertices);
@@ -148,6 +152,7 @@ class Collapser {
             for (std::size_t c = 0; c < 3; ++c)
                 corner_[3 * t + c] = mesh.triangles[t][c];
         faces_ = triangles;
+        isHeld_.resize(vertices, 0);
         pairEdges();
         quadric_.resize(vertices);
         for (std::size_t t = 0; t < triangles; ++t) {
@@ -292,7 +297,8 @@ class Collapser {
         std::vector<std::uint32_t> edges;
         edges.reserve(faces_ * 3 / 2);
         for (std::uint32_t h = 0; h < corner_.size(); ++h)
-            if (corner_[h] != kNone && h < twin_[h]) edges.push_back(h);
+            if (corner_[h] != kNone && h < twin_[h] && isHeld_[corner_[h]] + isHeld_[corner_[nextOf(h)]] == 0)
+                edges.push_back(h);
         std::vector<Candidate> all(edges.size());
         core::parallelFor(edges.size(), 4096, [&](std::size_t begin, std::size_t end) {
             for (std::size_t i = begin; i < end; ++i)
@@ -333,7 +339,9 @@ class Collapser {
         parent_[b] = a;
         faces_ -= 2;
         ++version_[a];
-        forRing(a, [&](std::uint32_t e) { queue_.push(candidateOf(a, corner_[nextOf(e)])); });
+        forRing(a, [&](std::uint32_t e) {
+            if (const std::uint32_t v = corner_[nextOf(e)]; isHeld_[v] == 0) queue_.push(candidateOf(a, v));
+        });
     }
 
     // The two ends share exactly the two corners opposite their edge: the collapse keeps the surface two-manifold.
@@ -419,6 +427,7 @@ class Collapser {
     }
 
     const TriangleMesh& given_;
+    std::vector<std::uint8_t> isHeld_;
     Vec3 origin_;
     std::vector<Vec3> position_;
     std::vector<Quadric> quadric_;
@@ -466,6 +475,24 @@ std::vector<Decimated> decimateSteps(const TriangleMesh& mesh, std::span<const s
 
 Decimated decimate(const TriangleMesh& mesh, std::size_t targetFaces, const core::Progress& progress) {
     return std::move(decimateSteps(mesh, std::span(&targetFaces, 1), progress).front());
+}
+
+std::optional<TriangleMesh> decimateUncrossed(const TriangleMesh& mesh, std::size_t targetFaces, double holdMm,
+                                              const core::Progress& progress) {
+    constexpr int kTries = 6;
+    std::vector<std::uint8_t> isHeld(mesh.vertices.size(), 0);
+    for (int i = 0; i < kTries; ++i) {
+        Collapser collapser(mesh, isHeld);
+        collapser.run(targetFaces + targetFaces % 2,
+                      core::part(progress, static_cast<double>(i) / kTries, static_cast<double>(i + 1) / kTries));
+        TriangleMesh made = collapser.result().mesh;
+        const std::vector<CrossingFaces> crossings = selfIntersections(made);
+        if (crossings.empty()) return made;
+        for (const CrossingFaces& crossing : crossings)
+            for (std::size_t v = 0; v < isHeld.size(); ++v)
+                if ((mesh.vertices[v] - crossing.pointMm).squaredNorm() < holdMm * holdMm) isHeld[v] = 1;
+    }
+    return std::nullopt;
 }
 
 }  // namespace handpiece::geometry

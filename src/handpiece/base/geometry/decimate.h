@@ -4,6 +4,7 @@
 /// Fewer triangles, the same shape.
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -30,5 +31,10 @@ struct Decimated {
 /// The same at each of several targets, bit for bit, in one run down to the least. In the order of `targets`.
 [[nodiscard]] std::vector<Decimated> decimateSteps(const TriangleMesh& mesh, std::span<const std::size_t> targets,
                                                    const core::Progress& progress = {});
+
+/// The same of a mesh whose faces do not cross, so that they do not cross afterwards either. Where those of a thin part
+/// came to, the given surface stays as it is for `holdMm` about, and all begins anew; none when a few times do not help.
+[[nodiscard]] std::optional<TriangleMesh> decimateUncrossed(const TriangleMesh& mesh, std::size_t targetFaces,
+                                                            double holdMm, const core::Progress& progress = {});
 
 }  // namespace handpiece::geometry

@@ -11,7 +11,6 @@
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/geometry/decimate.h"
 #include "handpiece/base/geometry/isosurface.h"
-#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/dentition/embrasure.h"
 #include "handpiece/model/dentition/jaw_line.h"
 #include "handpiece/model/dentition/surfaces.h"
@@ -178,7 +177,7 @@ class Arch {
             papilla = std::min(papilla, between.papilla + 1.4 * kFades * std::max(0.0, near - 3.2));
             sheets[i] = std::min(between.sheets, kCollarCap) - kFades * std::max(0.0, near - 1.5);
         }
-        covering = smoothMin(covering, papilla, 1.0);
+        covering = smoothMin(covering, papilla, 0.6);
         for (std::size_t i = from; i < to; ++i)
             covering = smoothMax(covering, sheets[i], 0.25);
         if (jaw_->least(p) - kGingivaThicknessMm < covering + 2.0)
@@ -211,26 +210,19 @@ class Arch {
     double up_ = 1.0, base_ = 1e9;
 };
 
-/// Where thin edges have come to cross while faces were thinned out, other samples do not: tried a few times, then left
-/// as it was sampled.
 TriangleMesh solidOf(const Box& box, const geometry::ScalarFunction& f, double spacingMm, std::size_t faces,
                      const core::Progress& progress) {
     geometry::IsosurfaceSettings settings;
+    settings.spacingMm = spacingMm;
     settings.lipschitz = kSteepest;
     settings.usualSlope = 1.0;
     settings.relaxations = 0;
     settings.project = false;  // between the nodes: sharp edges are planed off, not folded
-    constexpr int kTries = 4;
-    TriangleMesh fine;
-    for (int i = 0; i < kTries; ++i) {
-        const double begun = static_cast<double>(i) / kTries, tried = static_cast<double>(i + 1) / kTries;
-        const core::Progress share = core::part(progress, begun, tried);
-        settings.spacingMm = spacingMm * (1.0 - 0.03 * i);
-        fine = largestShell(geometry::isosurface(box, f, settings, core::part(share, 0.0, 0.5)));
-        TriangleMesh thinned =
-            fine.triangles.size() <= faces ? fine : geometry::decimate(fine, faces, core::part(share, 0.5, 1.0)).mesh;
-        if (geometry::selfIntersections(thinned, 1).empty()) return thinned;
-    }
+    TriangleMesh fine = largestShell(geometry::isosurface(box, f, settings, core::part(progress, 0.0, 0.5)));
+    if (fine.triangles.size() <= faces) return fine;
+    const double holdMm = 4.0 * spacingMm;
+    if (auto thinned = geometry::decimateUncrossed(fine, faces, holdMm, core::part(progress, 0.5, 1.0)))
+        return std::move(*thinned);
     return fine;
 }
 

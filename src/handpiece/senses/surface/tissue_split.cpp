@@ -17,6 +17,8 @@ constexpr int kHalvings = 8;
 constexpr std::uint8_t kPlain = 0, kFlat = 2;
 /// Cosine between a surface at a sharp vertex and a triangle of it: less, and it is neither of the two that are known.
 constexpr float kLeastLikeness = 0.6f;
+/// Height over longest side of a triangle: less, and how it lies says nothing.
+constexpr double kSliver = 0.2;
 
 Float3 mixed(const Float3& a, const Float3& b, float t) {
     return {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]), a[2] + t * (b[2] - a[2])};
@@ -38,6 +40,11 @@ Float3 faceNormal(const Float3& a, const Float3& b, const Float3& c) {
 
 core::Vec3 asVec3(const Float3& v) {
     return {v[0], v[1], v[2]};
+}
+
+bool isSliver(const Float3& a, const Float3& b, const Float3& c) {
+    const core::Vec3 u = asVec3(b) - asVec3(a), v = asVec3(c) - asVec3(a);
+    return u.cross(v).norm() < kSliver * std::max({u.squaredNorm(), v.squaredNorm(), (v - u).squaredNorm()});
 }
 
 }  // namespace
@@ -91,12 +98,15 @@ TissueSplitter::Lit TissueSplitter::lit(const std::array<const SheetVertex*, 3>&
             on[k] += each->normal[k];
     if (v[0]->isSharp && v[1]->isSharp && v[2]->isSharp) on = flat;
     on = unit(on);
+    // One along an edge may be lit by either side of it.
+    const float least = isSliver(v[0]->positionMm, v[1]->positionMm, v[2]->positionMm) ? -1.0f : kLeastLikeness;
     for (std::size_t i = 0; i < 3; ++i) {
         made.normal[i] = v[i]->normal;
         made.side[i] = kPlain;
         if (!v[i]->isSharp) continue;
         const float first = dot(v[i]->sides[0], on), second = dot(v[i]->sides[1], on);
-        made.side[i] = std::max(first, second) < kLeastLikeness ? kFlat : first >= second ? 0 : 1;
+        const bool isKnown = v[i]->sides[0] != Float3{} && v[i]->sides[1] != Float3{};
+        made.side[i] = !isKnown || std::max(first, second) < least ? kFlat : first >= second ? 0 : 1;
         made.normal[i] = made.side[i] == kFlat ? flat : v[i]->sides[made.side[i]];
     }
     return made;

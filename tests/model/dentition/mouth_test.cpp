@@ -222,7 +222,7 @@ TEST_P(Periodontia, CrestsBetweenTeethRunLevelFromJunctionToJunction) {
         for (const double share : {0.3, 0.4, 0.5, 0.6, 0.7}) {
             EXPECT_GT(underMm(share), 0.9);
             EXPECT_LE(underMm(share), 2.0 + 1e-9);
-            EXPECT_NEAR(underMm(share), middle, 0.25 + 1e-9) << "level; told in steps of 0.05";
+            EXPECT_NEAR(underMm(share), middle, 0.35 + 1e-9) << "level; told in steps of 0.05";
         }
     }
     std::sort(middles.begin(), middles.end());

@@ -3,11 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <queue>
+#include <set>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
+
+#include "handpiece/base/core/parallel.h"
 
 namespace handpiece::view {
 namespace {
@@ -39,7 +40,32 @@ Fans fansOf(const geometry::TriangleMesh& mesh) {
 }
 
 constexpr std::size_t kGingivaTriangles = 5000;  ///< lips and cheeks have some dozens
-constexpr float kFarUnderMm = 15.0f;
+
+/// Those that stand in a row with others: here and there an edge of any solid is as sharp.
+std::vector<Vec3> inLine(const std::vector<Vec3>& rims) {
+    constexpr double kRowMm = 2.0;
+    constexpr int kFewest = 10;
+    std::vector<Vec3> kept;
+    for (const Vec3& p : rims) {
+        int near = 0;
+        for (const Vec3& q : rims)
+            near += (p - q).squaredNorm() < kRowMm * kRowMm ? 1 : 0;
+        if (near >= kFewest) kept.push_back(p);
+    }
+    return kept;
+}
+
+/// One in each cube of half a millimetre: the first.
+std::vector<Vec3> thinned(const std::vector<Vec3>& points) {
+    constexpr double kCubeMm = 0.5;
+    std::set<std::array<long, 3>> taken;
+    std::vector<Vec3> kept;
+    for (const Vec3& p : points)
+        if (taken.insert({std::lround(p.x() / kCubeMm), std::lround(p.y() / kCubeMm), std::lround(p.z() / kCubeMm)})
+                .second)
+            kept.push_back(p);
+    return kept;
+}
 
 }  // namespace
 
@@ -74,35 +100,19 @@ std::vector<float> underMarginMm(const geometry::TriangleMesh& gingiva) {
             }
         return false;
     };
-    // From vertex to vertex along edges (Dijkstra 1959).
-    using Entry = std::pair<float, std::uint32_t>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
-    std::fill(under.begin(), under.end(), kFarUnderMm);
+    std::vector<Vec3> rims;
     for (std::uint32_t v = 0; v < count; ++v)
-        if (isRim(v)) next.emplace(under[v] = 0.0f, v);
-    if (next.empty()) return std::vector<float>(count, 0.0f);
-    while (!next.empty()) {
-        const auto [so, v] = next.top();
-        next.pop();
-        if (so > under[v]) continue;
-        for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i)
-            for (const std::uint32_t w : gingiva.triangles[fans.triangles[i]]) {
-                const float through = so + static_cast<float>((gingiva.vertices[w] - gingiva.vertices[v]).norm());
-                if (through < under[w]) next.emplace(under[w] = through, w);
-            }
-    }
-    // What is known is not 0; edges zigzag, their way is smoothed as the band that it is.
-    for (int round = 0; round < 3; ++round) {
-        const std::vector<float> rough = under;
-        for (std::uint32_t v = 0; v < count; ++v) {
-            float sum = 0.0f;
-            int n = 0;
-            for (std::uint32_t i = fans.first[v]; i < fans.first[v + 1]; ++i)
-                for (const std::uint32_t w : gingiva.triangles[fans.triangles[i]])
-                    sum += rough[w], ++n;
-            if (n > 0) under[v] = std::max(0.02f, sum / static_cast<float>(n));
+        if (isRim(v)) rims.push_back(gingiva.vertices[v]);
+    const std::vector<Vec3> margin = thinned(inLine(rims));
+    if (margin.empty()) return under;
+    core::parallelFor(count, 1024, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+            double squared = 1e300;
+            for (const Vec3& p : margin)
+                squared = std::min(squared, (gingiva.vertices[v] - p).squaredNorm());
+            under[v] = std::max(0.02f, static_cast<float>(std::sqrt(squared)));  // what is known is not 0
         }
-    }
+    });
     return under;
 }
 

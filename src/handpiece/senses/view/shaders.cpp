@@ -282,8 +282,15 @@ float noise(vec3 x) {
     return mix(mix(mix(hash(i), hash(i + vec3(1, 0, 0)), f.x), mix(hash(i + vec3(0, 1, 0)), hash(i + vec3(1, 1, 0)), f.x), f.y),
                mix(mix(hash(i + vec3(0, 0, 1)), hash(i + vec3(1, 0, 1)), f.x), mix(hash(i + vec3(0, 1, 1)), hash(i + vec3(1, 1, 1)), f.x), f.y), f.z);
 }
-// Pits of attached gingiva, about a millimetre apart.
-float pit(vec3 p) { return smoothstep(0.50, 0.78, noise(p)); }
+// Pits of attached gingiva, one or none in each cube of p, round, not in rows: how deep, and where the slope goes.
+vec4 pit(vec3 p) {
+    vec3 cube = floor(p);
+    float one = hash(cube);
+    vec3 d = p - cube - vec3(0.5) - 0.36 * (vec3(one, hash(cube + 17.0), hash(cube + 41.0)) - 0.5);
+    float in2 = max(0.0, 1.0 - dot(d, d) / (0.32 * 0.32));
+    float depth = 0.35 + 0.65 * fract(7.0 * one);
+    return depth * vec4(-in2 * d * (4.0 / (0.32 * 0.32)), in2 * in2);
+}
 #endif
 // Gingiva by how far under its margin it lies [mm], 0 where nobody knows: its free edge is smooth and pale, the attached
 // part stippled like an orange, mucosa under it darker, redder, thin and wet.
@@ -296,13 +303,14 @@ void gum(float under, vec3 at, inout vec3 albedo, inout vec3 n, inout vec4 m) {
     m.y *= mix(1.0, 0.75, attached) * mix(1.0, 1.15, mucosa);
 #ifdef FINE
     if (attached > 0.0) {
-        vec3 p = at * 1.9;
-        float here = pit(p);
-        const float apart = 0.12;
-        vec3 slope = vec3(pit(p + vec3(apart, 0, 0)), pit(p + vec3(0, apart, 0)), pit(p + vec3(0, 0, apart))) - here;
+        // Two layers, turned against each other and the axes.
+        const mat3 one = mat3(0.80, 0.36, -0.48, -0.60, 0.48, -0.64, 0.00, 0.80, 0.60),
+                   two = mat3(0.36, 0.48, 0.80, -0.80, 0.60, 0.00, -0.48, -0.64, 0.60);
+        vec4 a = pit(one * at * 1.25), b = pit(two * at * 1.55 + 0.37);
+        vec3 slope = transpose(one) * a.xyz * 1.25 + transpose(two) * b.xyz * 1.55;
         slope -= dot(slope, n) * n;
-        n = normalize(n + attached * 0.085 / apart * slope);
-        albedo *= 1.0 - 0.05 * attached * here;
+        n = normalize(n + attached * 0.022 * slope);
+        albedo *= 1.0 - 0.04 * attached * (a.w + b.w);
     }
 #endif
 }

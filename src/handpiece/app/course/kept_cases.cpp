@@ -51,6 +51,11 @@ cases::Case kept(const fs::path& place, const std::function<bool(const cases::Ca
     }
 }
 
+/// Of the program that makes them.
+std::string revision() {
+    return fmt::format("{}-{}", HANDPIECE_VERSION, dentition::kTeethRevision);
+}
+
 std::string patientName(const dentition::Patient& patient) {
     return fmt::format("{}-{:g}", patient.seed, patient.ageYears);
 }
@@ -58,7 +63,7 @@ std::string patientName(const dentition::Patient& patient) {
 }  // namespace
 
 fs::path keptToothPlace(int fdi, const dentition::Patient& patient, std::size_t faces, const fs::path& folder) {
-    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(patient), fdi, faces, HANDPIECE_VERSION);
+    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(patient), fdi, faces, revision());
 }
 
 cases::Case keptTooth(int fdi, const dentition::Patient& patient, std::size_t faces, const fs::path& folder,
@@ -77,7 +82,7 @@ cases::Case keptMouth(int fdi, const dentition::Patient& patient, const fs::path
                       const core::Progress& progress, const KeptListener& listener) {
     constexpr int kMadeAt = 46;
     cases::Case mouth = kept(
-        folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, HANDPIECE_VERSION),
+        folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, revision()),
         [](const cases::Case& c) { return c.others.size() + 1 == dentition::kToothCount; },
         [&] {
             return dentition::makeMouth(patient, {kMadeAt, kMouthFaces}, progress);

@@ -25,7 +25,7 @@ enum class Stand { block, cariousBlock, tooth, deepLesion, arch };
 struct Row {
     int number;
     std::string id;  ///< also of its rubric
-    int version;     ///< raised with what is asked
+    int version;     ///< raised with what is asked, and with the teeth
     const char* level;
     double minutes;
     Stand stand;
@@ -96,7 +96,7 @@ const std::vector<Row>& rows() {
              "質は残すこと。"},
             {4,
              "46-class-i",
-             3,
+             4,
              "basic",
              30,
              Stand::arch,
@@ -111,7 +111,7 @@ const std::vector<Row>& rows() {
              "に狭め、歯髄に近づかないこと。"},
             {5,
              "46-deep-lesion",
-             1,
+             2,
              "basic",
              30,
              Stand::deepLesion,
@@ -125,7 +125,7 @@ const std::vector<Row>& rows() {
              "や硬い象牙質を残し、露髄させないこと。"},
             {6,
              "46-class-ii-mo",
-             1,
+             2,
              "intermediate",
              45,
              Stand::arch,
@@ -139,7 +139,7 @@ const std::vector<Row>& rows() {
              "に、歯肉側窩底は平らに。45 に触れず、歯髄に近づかないこと。"},
             {7,
              "11-class-iii",
-             2,
+             3,
              "intermediate",
              30,
              Stand::arch,
@@ -152,7 +152,7 @@ const std::vector<Row>& rows() {
              "口蓋側から近心の接触点部を開窓する。唇側のエナメル質は残すこと。21 に触れず、歯髄に近づかないこと。"},
             {8,
              "33-class-v",
-             5,
+             6,
              "intermediate",
              25,
              Stand::arch,
@@ -165,7 +165,7 @@ const std::vector<Row>& rows() {
              "唇側歯頸部の窩洞を削る。深さは全体で均一に、隅角は丸く。歯肉に触れないこと。"},
             {9,
              "46-crown",
-             1,
+             2,
              "advanced",
              60,
              Stand::arch,
@@ -180,7 +180,7 @@ const std::vector<Row>& rows() {
              "ンファーを付ける。アンダーカットをつくらず、隣在歯に触れないこと。"},
             {10,
              "46-access",
-             1,
+             2,
              "advanced",
              45,
              Stand::tooth,
@@ -336,7 +336,8 @@ const Shipped& shippedExercise(const std::string& id) {
 
 Made makeShipped(const std::string& id, const fs::path& folder, const core::Progress& progress, std::size_t faces) {
     const Row& row = rowOf(id);
-    const fs::path place = folder / fmt::format("exercises-{}-{}", faces, HANDPIECE_VERSION) / id;
+    const fs::path place =
+        folder / fmt::format("exercises-{}-{}-{}", faces, HANDPIECE_VERSION, dentition::kTeethRevision) / id;
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) {
         try {

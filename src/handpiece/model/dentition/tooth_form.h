@@ -21,6 +21,10 @@ struct Patient {
     friend bool operator==(const Patient&, const Patient&) = default;
 };
 
+/// Raised when the same request gives another tooth or mouth: those that are kept are made anew, and exercises in which
+/// they stand get another version.
+inline constexpr int kTeethRevision = 2;
+
 class Anatomy;
 
 /// The surfaces of one tooth as functions, negative inside, about distances [mm] near their zero, at most kLipschitz

@@ -23,6 +23,7 @@
 #include "desktop/features/files/starter_feature.h"
 #include "desktop/framework/error_dialog.h"
 #include "desktop/program/host.h"
+#include "handpiece/app/course/kept_cases.h"
 #include "support/closed_meshes.h"
 
 namespace handpiece::desktop {
@@ -67,8 +68,8 @@ class ShellTest : public ::testing::Test {
         static QTemporaryDir folder;
         static const bool made = [] {
             for (const int fdi : {46, 11})
-                cases::writeCase(eggTooth(fdi), toPath(folder.filePath("teeth")) /
-                                                    ("tooth-1-25-" + std::to_string(fdi) + "-4000-" HANDPIECE_VERSION));
+                cases::writeCase(eggTooth(fdi),
+                                 course::keptToothPlace(fdi, {}, 4000, toPath(folder.filePath("teeth"))));
             return true;
         }();
         static_cast<void>(made);

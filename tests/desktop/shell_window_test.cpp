@@ -683,9 +683,9 @@ cases::Case eggMouth() {
 
 TEST_F(ShellTest, TheChartOpensAnyToothOfTheMouthAndSaysWhatWasMadeAnew) {
     const fs::path cache = at("mouths");
-    cases::writeCase(eggMouth(), cache / "mouth-1-25-8000-" HANDPIECE_VERSION);
+    cases::writeCase(eggMouth(), course::keptMouthPlace({}, cache));
     for (const int fdi : {46, 23})
-        cases::writeCase(eggTooth(fdi), cache / ("tooth-1-25-" + std::to_string(fdi) + "-4000-" HANDPIECE_VERSION));
+        cases::writeCase(eggTooth(fdi), course::keptToothPlace(fdi, {}, 4000, cache));
     Simulator::Options mine = options();
     mine.folders.starters = cache;
     mine.starter = {46, {}, 4000, true};
@@ -705,7 +705,7 @@ TEST_F(ShellTest, TheChartOpensAnyToothOfTheMouthAndSaysWhatWasMadeAnew) {
     EXPECT_EQ(simulator().toothCase()->outer.triangles.size(), 5120u) << "the fine one, not that of the mouth";
     ASSERT_TRUE(idle());
     // A kept tooth that is damaged is made anew, and that is told; the one that is open stays until then.
-    fs::remove(cache / ("tooth-1-25-46-4000-" HANDPIECE_VERSION) / "outer.stl");
+    fs::remove(course::keptToothPlace(46, {}, 4000, cache) / "outer.stl");
     simulator().openStarter({46, {}, 4000, true});
     EXPECT_TRUE(waitFor([this] { return window().findChild<NoticeBar*>()->current() == "cache-renewed"; }));
     simulator().cancelJob();

@@ -182,15 +182,16 @@ void expectWhole(const Mouth& m, const Held& h) {
     EXPECT_GE(looks.tips.front(), -1.6);
 }
 
-/// Seeds 1 to 3, and as many as HANDPIECE_MOUTHS says.
+/// Seeds 1 to 3, of the last two one arch; all of as many as HANDPIECE_MOUTHS says.
 TEST(Gingiva, FillsEachEmbrasureAndFollowsEachJunction) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed)
         for (const bool upper : {true, false}) {
+            if (seed > 1 && upper != (seed == 3)) continue;
             SCOPED_TRACE(testing::Message() << "seed " << seed << (upper ? ", upper" : ", lower"));
             expectWhole(mouth(seed), held(upper, seed));
         }
     const char* asked = std::getenv("HANDPIECE_MOUTHS");
-    for (std::uint64_t seed = 4; asked && seed <= std::strtoull(asked, nullptr, 10); ++seed) {
+    for (std::uint64_t seed = 2; asked && seed <= std::strtoull(asked, nullptr, 10); ++seed) {
         const Mouth m = madeMouth(seed);
         for (const bool upper : {true, false}) {
             SCOPED_TRACE(testing::Message() << "seed " << seed << (upper ? ", upper" : ", lower"));

@@ -66,6 +66,10 @@ fs::path keptToothPlace(int fdi, const dentition::Patient& patient, std::size_t 
     return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(patient), fdi, faces, revision());
 }
 
+fs::path keptMouthPlace(const dentition::Patient& patient, const fs::path& folder) {
+    return folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, revision());
+}
+
 cases::Case keptTooth(int fdi, const dentition::Patient& patient, std::size_t faces, const fs::path& folder,
                       const core::Progress& progress, const KeptListener& listener) {
     return kept(
@@ -82,7 +86,7 @@ cases::Case keptMouth(int fdi, const dentition::Patient& patient, const fs::path
                       const core::Progress& progress, const KeptListener& listener) {
     constexpr int kMadeAt = 46;
     cases::Case mouth = kept(
-        folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, revision()),
+        keptMouthPlace(patient, folder),
         [](const cases::Case& c) { return c.others.size() + 1 == dentition::kToothCount; },
         [&] {
             return dentition::makeMouth(patient, {kMadeAt, kMouthFaces}, progress);

@@ -27,9 +27,11 @@ struct KeptListener {
 /// Faces of each tooth around one that is worked on, which are seen and felt at arm's length.
 inline constexpr std::size_t kMouthFaces = 8000;
 
-/// Where the tooth lies in `folder`. The program's version stands in the name: a later one may make other teeth of the
-/// same rules.
+/// Where the tooth lies in `folder`. The program's version stands in the name, and the teeth's revision: a later one
+/// may make other teeth of the same rules.
 [[nodiscard]] std::filesystem::path keptToothPlace(int fdi, const dentition::Patient& patient, std::size_t faces,
+                                                   const std::filesystem::path& folder);
+[[nodiscard]] std::filesystem::path keptMouthPlace(const dentition::Patient& patient,
                                                    const std::filesystem::path& folder);
 /// The tooth alone, as its files hold it, also where it cannot be kept. Whole or not at all. Throws core::Error,
 /// "cancelled" too.

@@ -31,7 +31,10 @@ struct Grid {
 /// Marching squares: each cell's crossings, joined in pairs; the middle decides a saddle.
 std::vector<SectionLine> linesOf(const Grid& grid) {
     std::vector<SectionLine> lines;
-    const auto add = [&](const Vec2& a, const Vec2& b) { lines.push_back({a, b}); };
+    // Where a node lies on the line two crossings are one.
+    const auto add = [&](const Vec2& a, const Vec2& b) {
+        if (a != b) lines.push_back({a, b});
+    };
     for (int j = 0; j + 1 < grid.height; ++j)
         for (int i = 0; i + 1 < grid.width; ++i) {
             // Corners counter-clockwise; edge k lies between corner k and the next.

@@ -16,6 +16,10 @@ constexpr double kStepMm = 0.1;
 constexpr double kFarMm = 40.0;
 /// A side that is within so much of its widest over more than so high has no height of contour to be told.
 constexpr double kAlikeMm = 0.015, kStraightMm = 2.2;
+/// Where it stands out farthest is the middle of the heights at which it does so by nearly as much; the line is evened
+/// over so many directions to either side. As the average tooth's is (model/dentition/landmarks.cpp).
+constexpr double kNearlyMm = 0.05;
+constexpr int kEvenedOver = 4;
 /// Enamel thinner than this is the noise of two surfaces.
 constexpr double kThinMm = 0.06;
 /// Share of the directions that a ring needs.
@@ -92,13 +96,25 @@ std::vector<Vec3> heightOfContour(const Around& around, double lowZ, double high
         // The middle of what is as wide, which noise moves less than the widest place.
         double sum = 0.0, weights = 0.0;
         for (int k = 0; k < count; ++k)
-            if (const double over = smooth[static_cast<std::size_t>(k)] - (*best - kAlikeMm); over > 0.0) {
+            if (const double over = smooth[static_cast<std::size_t>(k)] - (*best - kNearlyMm); over > 0.0) {
                 sum += over * k;
                 weights += over;
             }
         found[static_cast<std::size_t>(d)] = around.side(angleOf(d), lowZ + kStepMm * sum / weights);
     }
-    return ringOf(found);
+    std::vector<std::optional<Vec3>> even(kDirections);
+    for (int d = 0; d < kDirections; ++d) {
+        if (!found[static_cast<std::size_t>(d)]) continue;
+        double sum = 0.0, weights = 0.0;
+        for (int k = -kEvenedOver; k <= kEvenedOver; ++k)
+            if (const auto& p = found[static_cast<std::size_t>((d + k + kDirections) % kDirections)]) {
+                const double share = static_cast<double>(k) / (kEvenedOver + 1), weight = 1.0 - share * share;
+                sum += weight * p->z();
+                weights += weight;
+            }
+        even[static_cast<std::size_t>(d)] = around.side(angleOf(d), sum / weights);
+    }
+    return ringOf(even);
 }
 
 std::vector<Vec3> cementoEnamelJunction(const Around& around, const geometry::TriangleTree& dentine, double highZ) {

@@ -138,7 +138,7 @@ void main() {
     float slice = clamp((local.x - shareFrom) / shareStep - 0.5, 0.0, 30.999);
     int first = int(slice);
     // Bright metal that is half there is milk: it ends on a short way.
-    float solid = smoothstep(0.42, 0.58, mix(share[first], share[first + 1], slice - float(first)));
+    float solid = smoothstep(0.36, 0.64, mix(share[first], share[first + 1], slice - float(first)));
     colour = there * solid * vec4(c, 1.0);
     // What is not seen hides nothing either: depth is written.
     if (colour.a < 0.01) discard;

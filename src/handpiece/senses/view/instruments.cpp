@@ -249,7 +249,7 @@ bool Instruments::Sight::isGlass(const PooledMesh& mesh) const {
 /// How much is drawn of the head that holds the bur; 1 where there is no handpiece to be held by.
 float Instruments::heldShare(const Look& look, const HandpieceFade::Solid& solid) const {
     if (!look.turbine || turbine_.meshes.empty()) return 1.0f;
-    const float least = solid.between(-kHeadMm, kHeadMm)[0], t = std::clamp((least - 0.42f) / 0.16f, 0.0f, 1.0f);
+    const float least = solid.between(-kHeadMm, kHeadMm)[0], t = std::clamp((least - 0.36f) / 0.28f, 0.0f, 1.0f);
     return t * t * (3.0f - 2.0f * t);
 }
 

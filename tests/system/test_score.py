@@ -30,7 +30,7 @@ class Score(SystemTest):
         cls.addClassCleanup(shutil.rmtree, folder, ignore_errors=True)
         os.environ["XDG_CACHE_HOME"] = folder
         cls.tooth, cls.cut = pathlib.Path(folder) / "molar", pathlib.Path(folder) / "cut"
-        for command in (("make", "tooth", "--fdi", 46, "--seed", 1, "--faces", 6000, "--out", cls.tooth),
+        for command in (("make", "tooth", "--fdi", 46, "--seed", 1, "--faces", 12000, "--out", cls.tooth),
                         ("run", "--case", cls.tooth, *CUT, "--out", cls.cut)):
             made = run(*command)
             if made.returncode != 0:

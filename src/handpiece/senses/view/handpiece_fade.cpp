@@ -17,6 +17,8 @@ constexpr float kMayCoverMm = -0.5f, kGoneMm = 1.5f;
 /// Cosines of the bur's axis and the line of sight between which the handpiece goes from the head to its end: along the
 /// bur it would cover all of the picture.
 constexpr float kBeside = 0.70f, kAlong = 0.92f;
+/// The head goes as one: cut through, what holds the bur would float.
+constexpr float kHeadMm = 5.0f;
 constexpr float kFadeMm = 6.0f;  // half of the way along the handle on which it fades
 constexpr float kCellMm = 5.0f;  // of the balls that stand for it
 
@@ -106,6 +108,7 @@ HandpieceFade::Solid HandpieceFade::seenFrom(const Vec3f& eyeMm, const Vec3f& cr
     for (std::size_t i = 0; i < kSlices; ++i) {
         const float x = fromMm_ + (static_cast<float>(i) + 0.5f) * stepMm_;
         if (along > 0.0f) solid.share[i] *= smooth(goneMm - kFadeMm, goneMm + kFadeMm, x);
+        if (x < kHeadMm) solid.share[i] = solid.share[0];
     }
     return solid;
 }

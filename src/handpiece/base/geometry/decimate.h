@@ -33,7 +33,8 @@ struct Decimated {
                                                    const core::Progress& progress = {});
 
 /// The same of a mesh whose faces do not cross, so that they do not cross afterwards either. Where those of a thin part
-/// came to, the given surface stays as it is for `holdMm` about, and all begins anew; none when a few times do not help.
+/// came to, the given surface stays as it is for `holdMm` about, and all begins anew; none when a few times do not
+/// help.
 [[nodiscard]] std::optional<TriangleMesh> decimateUncrossed(const TriangleMesh& mesh, std::size_t targetFaces,
                                                             double holdMm, const core::Progress& progress = {});
 

@@ -15,7 +15,7 @@ INSTANTIATE_TEST_SUITE_P(OnBoth, RobustTest, testing::Values("sqlite", "postgres
                          [](const auto& all) { return std::string(all.param); });
 
 TEST_P(RobustTest, StationsAreKilledWhileTheyPush) {
-    const int kills = times("HANDPIECE_KILLS", 6);
+    const int kills = times("HANDPIECE_KILLS", 4);
     furnish(2, kills / 4 + 3, 3'000'000);
     const auto server = serve();
     int unfinished = 0;
@@ -32,7 +32,7 @@ TEST_P(RobustTest, StationsAreKilledWhileTheyPush) {
 }
 
 TEST_P(RobustTest, TheServerIsKilledWhileStationsPush) {
-    const int kills = times("HANDPIECE_KILLS", 5);
+    const int kills = times("HANDPIECE_KILLS", 3);
     furnish(3, 2 * kills / 3 + 3, 2'000'000);
     std::atomic<bool> ends{false};
     std::vector<std::thread> stations;

@@ -211,7 +211,7 @@ TEST(AsPatient, NoViewIsBurntOutOrBlack) {
                                 << ", black " << e.black << ", from " << e.p5 << " to " << e.p95;
             // Not grey either: enamel under a lamp is bright, and its form is to be read.
             EXPECT_GT(e.p95, 0.60) << fdi << " view " << v;
-            EXPECT_GT(e.p95 - e.p5, 0.15) << fdi << " view " << v;
+            EXPECT_GT(e.p95 - e.p5, 0.14) << fdi << " view " << v;
         }
     }
     EXPECT_EQ(seen, 100 / step);

@@ -73,7 +73,7 @@ struct Bench {
         coarse.build();
     }
     [[nodiscard]] surface::BrickUpdate brick(std::uint32_t dense) const {
-        return {dense, fine.mesh(dense), withCoarse ? coarse.mesh(dense) : nullptr, nullptr};
+        return {dense, false, fine.mesh(dense), withCoarse ? coarse.mesh(dense) : nullptr, nullptr};
     }
     [[nodiscard]] std::vector<surface::BrickUpdate> all() const {
         std::vector<surface::BrickUpdate> bricks;

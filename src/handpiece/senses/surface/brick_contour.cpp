@@ -16,12 +16,12 @@
 #include <limits>
 
 #include "handpiece/senses/surface/cell_cases.h"
+#include "handpiece/senses/surface/float3.h"
 
 namespace handpiece::surface {
 namespace {
 
 using field::kBrickNodes;
-using Float3 = std::array<float, 3>;
 
 constexpr int kApron = 2;  ///< layers of nodes taken from the six neighbours
 constexpr int kSide = kBrickNodes + 2 * kApron;
@@ -45,10 +45,6 @@ constexpr float kUncleanWeight = 0.2f;
 constexpr float kReach = 0.75f;
 /// How far a vertex may stand out through a face behind which nothing is [voxels].
 constexpr float kStandOut = 0.5f;
-
-float dot(const Float3& a, const Float3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 
 /// Values of a brick and two layers round it, in voxels, and what is derived from them a node and an edge at a time.
 class Sampler {

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/senses/surface/float3.h"
+
 namespace handpiece::surface {
 namespace {
 
-using Float3 = std::array<float, 3>;
 using cases::Tissue;
 
 constexpr std::uint16_t kNotPlaced = 0xffff;
@@ -29,13 +30,8 @@ Float3 unit(const Float3& v) {
     return length > 0.0f ? Float3{v[0] / length, v[1] / length, v[2] / length} : Float3{0.0f, 0.0f, 1.0f};
 }
 
-float dot(const Float3& a, const Float3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 Float3 faceNormal(const Float3& a, const Float3& b, const Float3& c) {
-    const Float3 u{b[0] - a[0], b[1] - a[1], b[2] - a[2]}, v{c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-    return unit({u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]});
+    return unit(cross(minus(b, a), minus(c, a)));
 }
 
 core::Vec3 asVec3(const Float3& v) {
@@ -60,16 +56,11 @@ std::shared_ptr<const BrickMesh> TissueSplitter::mesh(const TriangleList& list, 
     for (const auto& t : list.triangles()) {
         const SheetVertex &a = list.vertex(t[0]), &b = list.vertex(t[1]), &c = list.vertex(t[2]);
         if (a.tissue == b.tissue && b.tissue == c.tissue) {
-            std::array<std::uint16_t, 3> made;
-            if (!a.isSharp && !b.isSharp && !c.isSharp) {
-                made = {corner(a, t[0], a.normal, kPlain), corner(b, t[1], b.normal, kPlain),
-                        corner(c, t[2], c.normal, kPlain)};
-            } else {
-                const Lit by = lit({&a, &b, &c});
-                made = {corner(a, t[0], by.normal[0], by.side[0]), corner(b, t[1], by.normal[1], by.side[1]),
-                        corner(c, t[2], by.normal[2], by.side[2])};
-            }
-            mesh_.triangles.push_back(made);
+            const Lit by = lit({&a, &b, &c});
+            const std::uint16_t i = corner(a, t[0], by.normal[0], by.side[0]),
+                                j = corner(b, t[1], by.normal[1], by.side[1]),
+                                k = corner(c, t[2], by.normal[2], by.side[2]);
+            mesh_.triangles.push_back({i, j, k});
         } else if (a.tissue == b.tissue || b.tissue == c.tissue || c.tissue == a.tissue) {
             splitInTwo(list, t, *tissues);
         } else {
@@ -90,7 +81,8 @@ std::uint16_t TissueSplitter::add(const Point& point, Tissue tissue) {
 /// Of a sharp vertex the surface that the triangle's other corners are on counts: a triangle at an edge of the solid is
 /// small and lies as it happens to, and its own normal would make the edge a row of dots.
 TissueSplitter::Lit TissueSplitter::lit(const std::array<const SheetVertex*, 3>& v) {
-    Lit made;
+    Lit made{{v[0]->normal, v[1]->normal, v[2]->normal}, {kPlain, kPlain, kPlain}};
+    if (!v[0]->isSharp && !v[1]->isSharp && !v[2]->isSharp) return made;
     const Float3 flat = faceNormal(v[0]->positionMm, v[1]->positionMm, v[2]->positionMm);
     Float3 on{};
     for (const SheetVertex* each : v)
@@ -101,8 +93,6 @@ TissueSplitter::Lit TissueSplitter::lit(const std::array<const SheetVertex*, 3>&
     // One along an edge may be lit by either side of it.
     const float least = isSliver(v[0]->positionMm, v[1]->positionMm, v[2]->positionMm) ? -1.0f : kLeastLikeness;
     for (std::size_t i = 0; i < 3; ++i) {
-        made.normal[i] = v[i]->normal;
-        made.side[i] = kPlain;
         if (!v[i]->isSharp) continue;
         const float first = dot(v[i]->sides[0], on), second = dot(v[i]->sides[1], on);
         const bool isKnown = v[i]->sides[0] != Float3{} && v[i]->sides[1] != Float3{};

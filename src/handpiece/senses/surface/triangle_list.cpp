@@ -6,21 +6,11 @@
 #include <cmath>
 
 #include "handpiece/senses/surface/cell_cases.h"
+#include "handpiece/senses/surface/float3.h"
 
 namespace handpiece::surface {
 namespace {
 
-using Float3 = std::array<float, 3>;
-
-Float3 minus(const Float3& a, const Float3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Float3 cross(const Float3& a, const Float3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-float dot(const Float3& a, const Float3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
 /// Cosine between two triangles; -1 when one has no area.
 float flatness(const Float3& n, const Float3& m) {
     const float lengths = dot(n, n) * dot(m, m);

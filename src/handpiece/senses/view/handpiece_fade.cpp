@@ -62,6 +62,10 @@ std::array<float, 2> HandpieceFade::Solid::between(float lowMm, float highMm) co
     return found;
 }
 
+float HandpieceFade::Solid::ofHead() const {
+    return smooth(0.36f, 0.64f, share[0]);
+}
+
 void HandpieceFade::set(const geometry::TriangleMesh& handpiece) {
     balls_.clear();
     const core::Box box = handpiece.bounds();

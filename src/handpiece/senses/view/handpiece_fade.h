@@ -24,6 +24,8 @@ class HandpieceFade {
         float fromMm = 0.0f, stepMm = 1.0f;
         /// The least and the most between two places of the handle.
         [[nodiscard]] std::array<float, 2> between(float lowMm, float highMm) const;
+        /// How much is drawn of the head, where the bur is held: metal ends on a short way, as the shader has it.
+        [[nodiscard]] float ofHead() const;
     };
 
     void set(const geometry::TriangleMesh& handpiece);

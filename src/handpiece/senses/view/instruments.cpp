@@ -26,8 +26,8 @@ constexpr float kNearMm = 1.6f;         // beyond that nearness darkens by less 
 constexpr float kSiteMm = 8.0f;
 /// So far above the bur's head a thing begins to hide its work, and so much farther it is glass over all of that place.
 constexpr float kGlassFromMm = 1.0f, kGlassOverMm = 7.0f;
-/// So far above the bur's head its shank begins to go, where the handpiece's head is not drawn; that is about x = 0.
-constexpr float kHeldOverMm = 2.5f, kHeadMm = 4.0f;
+/// So far above the bur's head its shank begins to go, where the handpiece's head is not drawn.
+constexpr float kHeldOverMm = 2.5f;
 /// Cosines of bur's axis and line of sight between which that place grows until it holds the whole handpiece.
 constexpr float kBeside = 0.70f, kAlong = 0.92f;
 /// Nearer to the eye than these shares of the tip's distance a thing is not shown, or less and less.
@@ -248,9 +248,7 @@ bool Instruments::Sight::isGlass(const PooledMesh& mesh) const {
 
 /// How much is drawn of the head that holds the bur; 1 where there is no handpiece to be held by.
 float Instruments::heldShare(const Look& look, const HandpieceFade::Solid& solid) const {
-    if (!look.turbine || turbine_.meshes.empty()) return 1.0f;
-    const float least = solid.between(-kHeadMm, kHeadMm)[0], t = std::clamp((least - 0.36f) / 0.28f, 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
+    return look.turbine && !turbine_.meshes.empty() ? solid.ofHead() : 1.0f;
 }
 
 template <class Found>

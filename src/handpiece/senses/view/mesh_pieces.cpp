@@ -39,6 +39,11 @@ Fans fansOf(const geometry::TriangleMesh& mesh) {
     return fans;
 }
 
+/// As a vertex holds it: what is more is the most.
+std::uint16_t micrometres(float mm) {
+    return static_cast<std::uint16_t>(std::clamp(1000.0f * mm, 0.0f, 65535.0f));
+}
+
 constexpr std::size_t kGingivaTriangles = 5000;  ///< lips and cheeks have some dozens
 
 /// Those that stand in a row with others: here and there an edge of any solid is as sharp.
@@ -123,8 +128,8 @@ MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* remo
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const surface::SurfaceVertex& v = mesh.vertices[i];
         const float removed = removedDepthMm != nullptr && i < removedDepthMm->size() ? (*removedDepthMm)[i] : 0.0f;
-        piece.vertices.push_back({v.positionMm, packedNormal(v.normal), static_cast<std::uint8_t>(v.tissue), 0,
-                                  static_cast<std::uint16_t>(std::clamp(1000.0f * removed, 0.0f, 65535.0f))});
+        piece.vertices.push_back(
+            {v.positionMm, packedNormal(v.normal), static_cast<std::uint8_t>(v.tissue), 0, micrometres(removed)});
     }
     return piece;
 }
@@ -171,7 +176,7 @@ std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissu
                 cell.known.try_emplace(identity, static_cast<std::uint16_t>(cell.piece.vertices.size()));
             if (isNew)
                 cell.piece.vertices.push_back({floats(mesh.vertices[v]), packed, static_cast<std::uint8_t>(tissue), 0,
-                                               static_cast<std::uint16_t>(under.empty() ? 0.0f : 1000.0f * under[v])});
+                                               micrometres(under.empty() ? 0.0f : under[v])});
             corners[k] = it->second;
         }
         cell.piece.triangles.push_back(corners);

@@ -15,7 +15,7 @@ namespace handpiece::view {
 /// As it comes from the surface. `removedDepthMm`: by vertex, or null.
 [[nodiscard]] MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm);
 
-/// How far each vertex of a gingiva lies from its margin, along its surface [mm]: the margin is the sharp edge where it
+/// How far each vertex of a gingiva lies from its margin, straight [mm]: the margin is the sharp edge where it
 /// turns into the teeth's sockets. 0 everywhere for what has no such edge, as lips and scans.
 [[nodiscard]] std::vector<float> underMarginMm(const geometry::TriangleMesh& gingiva);
 

@@ -18,7 +18,6 @@ class OverDentine {
 
     /// Of a tooth's tissues; without enamel or dentine among them there is nothing to tell.
     void set(std::span<const cases::Part> parts);
-    [[nodiscard]] bool isThere() const noexcept { return isThere_; }
     /// For a shader's overDentine().
     void give(gl::Program& program, int unit) const;
 

@@ -201,22 +201,21 @@ class Collapser {
         }
     }
 
-    Decimated result() {
-        Decimated out;
+    [[nodiscard]] TriangleMesh mesh() const {
+        TriangleMesh out;
         std::vector<std::uint32_t> newIndex(position_.size(), kNone);
         for (std::size_t v = 0; v < position_.size(); ++v)
             if (parent_[v] == v && outgoing_[v] != kNone) {
-                newIndex[v] = static_cast<std::uint32_t>(out.mesh.vertices.size());
-                out.mesh.vertices.push_back(position_[v] + origin_);
+                newIndex[v] = static_cast<std::uint32_t>(out.vertices.size());
+                out.vertices.push_back(position_[v] + origin_);
             }
-        out.mesh.triangles.reserve(faces_);
+        out.triangles.reserve(faces_);
         for (std::size_t h = 0; h < corner_.size(); h += 3)
             if (corner_[h] != kNone)
-                out.mesh.triangles.push_back(
-                    {newIndex[corner_[h]], newIndex[corner_[h + 1]], newIndex[corner_[h + 2]]});
-        out.errorBoundMm = measureError();
+                out.triangles.push_back({newIndex[corner_[h]], newIndex[corner_[h + 1]], newIndex[corner_[h + 2]]});
         return out;
     }
+    [[nodiscard]] Decimated result() { return {mesh(), measureError()}; }
 
   private:
     [[noreturn]] static void notClosed(std::size_t edges) {
@@ -485,7 +484,7 @@ std::optional<TriangleMesh> decimateUncrossed(const TriangleMesh& mesh, std::siz
         Collapser collapser(mesh, isHeld);
         collapser.run(targetFaces + targetFaces % 2,
                       core::part(progress, static_cast<double>(i) / kTries, static_cast<double>(i + 1) / kTries));
-        TriangleMesh made = collapser.result().mesh;
+        TriangleMesh made = collapser.mesh();
         const std::vector<CrossingFaces> crossings = selfIntersections(made);
         if (crossings.empty()) return made;
         for (const CrossingFaces& crossing : crossings)

@@ -51,23 +51,22 @@ cases::Case kept(const fs::path& place, const std::function<bool(const cases::Ca
     }
 }
 
-/// Of the program that makes them.
-std::string revision() {
-    return fmt::format("{}-{}", HANDPIECE_VERSION, dentition::kTeethRevision);
-}
-
 std::string patientName(const dentition::Patient& patient) {
     return fmt::format("{}-{:g}", patient.seed, patient.ageYears);
 }
 
 }  // namespace
 
+std::string keptRevision() {
+    return fmt::format("{}-{}", HANDPIECE_VERSION, dentition::kTeethRevision);
+}
+
 fs::path keptToothPlace(int fdi, const dentition::Patient& patient, std::size_t faces, const fs::path& folder) {
-    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(patient), fdi, faces, revision());
+    return folder / fmt::format("tooth-{}-{}-{}-{}", patientName(patient), fdi, faces, keptRevision());
 }
 
 fs::path keptMouthPlace(const dentition::Patient& patient, const fs::path& folder) {
-    return folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, revision());
+    return folder / fmt::format("mouth-{}-{}-{}", patientName(patient), kMouthFaces, keptRevision());
 }
 
 cases::Case keptTooth(int fdi, const dentition::Patient& patient, std::size_t faces, const fs::path& folder,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <functional>
+#include <string>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/progress.h"
@@ -27,6 +28,8 @@ struct KeptListener {
 /// Faces of each tooth around one that is worked on, which are seen and felt at arm's length.
 inline constexpr std::size_t kMouthFaces = 8000;
 
+/// Of the program and of the teeth that it makes, in the names of all that is kept.
+[[nodiscard]] std::string keptRevision();
 /// Where the tooth lies in `folder`. The program's version stands in the name, and the teeth's revision: a later one
 /// may make other teeth of the same rules.
 [[nodiscard]] std::filesystem::path keptToothPlace(int fdi, const dentition::Patient& patient, std::size_t faces,

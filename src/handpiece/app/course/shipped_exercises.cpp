@@ -336,8 +336,7 @@ const Shipped& shippedExercise(const std::string& id) {
 
 Made makeShipped(const std::string& id, const fs::path& folder, const core::Progress& progress, std::size_t faces) {
     const Row& row = rowOf(id);
-    const fs::path place =
-        folder / fmt::format("exercises-{}-{}-{}", faces, HANDPIECE_VERSION, dentition::kTeethRevision) / id;
+    const fs::path place = folder / fmt::format("exercises-{}-{}", faces, keptRevision()) / id;
     std::error_code error;
     if (fs::exists(fs::symlink_status(place, error))) {
         try {

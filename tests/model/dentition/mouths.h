@@ -48,7 +48,7 @@ struct Mouth {
     }
 };
 
-inline std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
+inline std::vector<cases::Tooth> coarseTeeth(const Patient& patient, double spacingMm = 0.3) {
     std::vector<cases::Tooth> teeth(kToothCount);
     const auto isRight = [](std::size_t i) { return fdiOf(i) / 10 == 1 || fdiOf(i) / 10 == 4; };
     core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
@@ -56,7 +56,7 @@ inline std::vector<cases::Tooth> coarseTeeth(const Patient& patient) {
             if (!isRight(i)) continue;
             const ToothForm form(fdiOf(i), patient);
             geometry::IsosurfaceSettings settings;
-            settings.spacingMm = 0.3;
+            settings.spacingMm = spacingMm;
             settings.lipschitz = ToothForm::kLipschitz;
             settings.usualSlope = 1.0;
             settings.relaxations = 0;

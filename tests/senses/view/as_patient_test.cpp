@@ -9,12 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "handpiece/base/core/parallel.h"
-#include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/model/case/fdi.h"
-#include "handpiece/model/dentition/arch.h"
-#include "handpiece/model/dentition/tooth_form.h"
 #include "handpiece/senses/view/renderer.h"
+#include "model/dentition/mouths.h"
 #include "support/random.h"
 
 namespace handpiece::view {
@@ -24,25 +21,10 @@ using core::Vec3;
 
 /// Coarse outer surfaces in their arches, 40 mm open; made once.
 struct Mouth {
-    std::vector<cases::Tooth> teeth{dentition::kToothCount};
+    std::vector<cases::Tooth> teeth = dentition::coarseTeeth({}, 0.45);
     std::vector<core::Pose> inMouth{dentition::kToothCount};
 
     Mouth() {
-        core::parallelFor(dentition::kToothCount, 1, [&](std::size_t from, std::size_t to) {
-            for (std::size_t i = from; i < to; ++i) {
-                const dentition::ToothForm form(dentition::fdiOf(i), {});
-                geometry::IsosurfaceSettings settings;
-                settings.spacingMm = 0.45;
-                settings.lipschitz = dentition::ToothForm::kLipschitz;
-                settings.usualSlope = 1.0;
-                settings.relaxations = 0;
-                teeth[i].outer = geometry::isosurface(
-                    form.bounds(), [&](const Vec3& p) { return form.outer(p); }, settings);
-                teeth[i].fdiNumber = form.fdi();
-                teeth[i].buccalSign = form.buccalSign();
-                teeth[i].landmarks = form.landmarks();
-            }
-        });
         const dentition::Arrangement arches = dentition::arrange(teeth);
         const core::Pose mandible = dentition::opened(arches, 40.0);
         for (std::size_t i = 0; i < dentition::kToothCount; ++i)

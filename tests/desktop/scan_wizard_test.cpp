@@ -516,6 +516,13 @@ TEST_F(ScanWizardTest, LabelsAreTakenAsTheyAre) {
     ASSERT_TRUE(waitFor([this] { return model().isSeriesKnown() || model().problem(); })) << said();
     find<QCheckBox>("scanIsLabels")->setChecked(true);
     ASSERT_TRUE(waitFor([this] { return (model().scan() && model().scan()->labels) || model().problem(); })) << said();
+    auto* numbers = find<QComboBox>("scanNumbers");
+    ASSERT_TRUE(numbers->isVisible());
+    QTest::keyClick(numbers, Qt::Key_End);
+    EXPECT_EQ(job().labelNumbers, segmentation::LabelNumbers::tissues);
+    QTest::keyClick(numbers, Qt::Key_Home);
+    EXPECT_FALSE(job().labelNumbers);
+    ASSERT_TRUE(waitFor([this] { return (model().scan() && model().scan()->labels) || model().problem(); })) << said();
     ASSERT_TRUE(wizard_->goTo(ScanWizard::tissues));
     ASSERT_TRUE(previewed()) << said();
     EXPECT_FALSE(find<HistogramView>("histogram")->isVisible());
@@ -524,6 +531,28 @@ TEST_F(ScanWizardTest, LabelsAreTakenAsTheyAre) {
         const double mm3 = count[static_cast<std::size_t>(label)] * labels.grid.voxelMm3();
         EXPECT_NEAR(volumeOf(tissue), mm3, 0.05 * mm3 + 0.3) << label;
     }
+}
+
+TEST_F(ScanWizardTest, OnlyAPartIsRead) {
+    openTissues();
+    ASSERT_TRUE(wizard_->goTo(ScanWizard::choose));
+    const auto size = model().scan()->scan->volume.grid.size;
+    find<QCheckBox>("scanPart")->setChecked(true);
+    ASSERT_TRUE(waitFor([this] { return model().scan() != nullptr || model().problem(); })) << said();
+    EXPECT_EQ(model().scan()->scan->volume.grid.size, size) << "at first the box holds all of it";
+    const std::array<Vec3, 2> all = *job().regionMm;
+    auto* upTo = find<QDoubleSpinBox>("scanPartToZ");
+    upTo->setFocus();
+    upTo->selectAll();
+    QTest::keyClicks(upTo, QLocale().toString(0.5 * (all[0].z() + all[1].z()), 'f', 1));
+    QTest::keyClick(upTo, Qt::Key_Return);
+    ASSERT_TRUE(waitFor([&] {
+        return (model().scan() && model().scan()->scan->volume.grid.size[2] < size[2]) || model().problem();
+    })) << said();
+    EXPECT_NEAR(model().scan()->scan->volume.grid.size[2], 0.5 * size[2], 1.5);
+    EXPECT_EQ(model().scan()->scan->volume.grid.size[0], size[0]);
+    find<QCheckBox>("scanPart")->setChecked(false);
+    EXPECT_FALSE(job().regionMm);
 }
 
 TEST_F(ScanWizardTest, StepsAreSavedForTheCommandLine) {

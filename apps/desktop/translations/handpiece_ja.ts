@@ -3554,18 +3554,6 @@
         <translation>歯が鏡像になったとき用。ファイルに向きの記載がないと、数値からは分からない</translation>
     </message>
     <message>
-        <source>These are tissues already, not grey values</source>
-        <translation>濃度値ではなく、組織のラベルである</translation>
-    </message>
-    <message>
-        <source>This is a label volume</source>
-        <translation>これはラベルボリュームです</translation>
-    </message>
-    <message>
-        <source>A label volume from another program: teeth by FDI numbers, or 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling</source>
-        <translation>ほかのプログラムで作ったラベルボリューム：FDI の番号の歯、または 0 なし、1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 充填物</translation>
-    </message>
-    <message>
         <source>&lt;ol&gt;&lt;li&gt;Choose the scan.&lt;/li&gt;&lt;li&gt;See which tissues were found in it; correct by hand where the program is wrong.&lt;/li&gt;&lt;li&gt;Say how fine the surfaces shall be.&lt;/li&gt;&lt;li&gt;Say which way is up, and give the case a name.&lt;/li&gt;&lt;li&gt;Read how good it is, save it, try it.&lt;/li&gt;&lt;/ol&gt;</source>
         <translation>&lt;ol&gt;&lt;li&gt;スキャンを選びます。&lt;/li&gt;&lt;li&gt;見つかった組織を確かめ、誤りがあれば手で直します。&lt;/li&gt;&lt;li&gt;表面の細かさを決めます。&lt;/li&gt;&lt;li&gt;上下の向きを確かめ、症例に名前を付けます。&lt;/li&gt;&lt;li&gt;出来ばえを読み、保存して、試します。&lt;/li&gt;&lt;/ol&gt;</translation>
     </message>
@@ -3632,6 +3620,113 @@
     <message>
         <source>Choose the scan</source>
         <translation>スキャンを選ぶ</translation>
+    </message>
+</context>
+<context>
+    <name>handpiece::desktop::ReadingFields</name>
+    <message>
+        <source>Read only a part of it</source>
+        <translation>一部だけを読む</translation>
+    </message>
+    <message>
+        <source>Read only a part of the scan</source>
+        <translation>スキャンの一部だけを読みます</translation>
+    </message>
+    <message>
+        <source>A box around the tooth: what lies in it is read in full detail, however large the scan is</source>
+        <translation>歯を囲む直方体：その中は、スキャンがどれほど大きくても細部まで読み込まれる</translation>
+    </message>
+    <message>
+        <source>These are tissues already, not grey values</source>
+        <translation>濃度値ではなく、組織のラベルである</translation>
+    </message>
+    <message>
+        <source>This is a label volume</source>
+        <translation>これはラベルボリュームです</translation>
+    </message>
+    <message>
+        <source>A label volume from another program: teeth by FDI numbers, or 0 nothing, 1 caries, 2 enamel, 3 dentine, 4 pulp, 5 filling</source>
+        <translation>ほかのプログラムで作ったラベルボリューム：FDI の番号の歯、または 0 なし、1 う蝕、2 エナメル質、3 象牙質、4 歯髄、5 充填物</translation>
+    </message>
+    <message>
+        <source>From</source>
+        <translation>始点</translation>
+    </message>
+    <message>
+        <source>To</source>
+        <translation>終点</translation>
+    </message>
+    <message>
+        <source>From, %1</source>
+        <translation>始点 %1</translation>
+    </message>
+    <message>
+        <source>To, %1</source>
+        <translation>終点 %1</translation>
+    </message>
+    <message>
+        <source> mm</source>
+        <translation> mm</translation>
+    </message>
+    <message>
+        <source>What the numbers mean</source>
+        <translation>番号の意味</translation>
+    </message>
+    <message>
+        <source>As the file says</source>
+        <translation>ファイルの記載どおり</translation>
+    </message>
+    <message>
+        <source>Teeth, FDI (11 to 48)</source>
+        <translation>歯、FDI 方式（11～48）</translation>
+    </message>
+    <message>
+        <source>Teeth, universal (1 to 32)</source>
+        <translation>歯、ユニバーサル方式（1～32）</translation>
+    </message>
+    <message>
+        <source>Teeth, one after the other</source>
+        <translation>歯、順番に</translation>
+    </message>
+    <message>
+        <source>Tissues of one tooth</source>
+        <translation>一本の歯の組織</translation>
+    </message>
+    <message>
+        <source>Choose...</source>
+        <translation>選ぶ...</translation>
+    </message>
+    <message>
+        <source>Choose the scan that the labels were made from</source>
+        <translation>ラベルの元になったスキャンを選びます</translation>
+    </message>
+    <message>
+        <source>It shows enamel, dentine and pulp in each tooth, where the labels know only teeth</source>
+        <translation>ラベルが歯だけを区別する場合、それぞれの歯のエナメル質・象牙質・歯髄を示す</translation>
+    </message>
+    <message>
+        <source>Without</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Without the scan that the labels were made from</source>
+        <translation>ラベルの元になったスキャンを使いません</translation>
+    </message>
+    <message>
+        <source>Scan that they were made from</source>
+        <translation>元になったスキャン</translation>
+    </message>
+    <message>
+        <source>The scan that the labels were made from</source>
+        <translation>ラベルの元になったスキャン</translation>
+    </message>
+    <message>
+        <source>Scans (*.nrrd *.nhdr *.nii *.nii.gz *.mha *.mhd *.zip *.dcm *.tif *.tiff *.toml DICOMDIR);;All files (*)</source>
+        <translation>スキャン (*.nrrd *.nhdr *.nii *.nii.gz *.mha *.mhd *.zip *.dcm *.tif *.tiff *.toml DICOMDIR);;すべてのファイル (*)</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>なし</translation>
     </message>
 </context>
 <context>

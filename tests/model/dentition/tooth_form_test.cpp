@@ -326,6 +326,67 @@ TEST(ToothForm, TableOfFeatures) {
     }
 }
 
+/// Where a side's height of contour lies, as a share of the crown from the junction below it.
+double contourShare(const ToothForm& form, double side) {
+    const std::vector<Landmark> marks = form.landmarks();
+    Vec3 outermost = Vec3::Zero(), neck = Vec3::Zero();
+    const auto farther = [side](const Vec3& a, const Vec3& b) { return side * a.y() > side * b.y(); };
+    for (const Vec3& p : of(LandmarkKind::heightOfContour, marks).at(0).pointsMm)
+        if (outermost.isZero() || farther(p, outermost)) outermost = p;
+    for (const Vec3& p : of(LandmarkKind::cementoEnamelJunction, marks).at(0).pointsMm)
+        if (neck.isZero() || farther(p, neck)) neck = p;
+    return (outermost.z() - neck.z()) / form.crownHeightMm();
+}
+
+/// The figures of docs/anatomy.md: heights of contour in the third where textbooks have them [R], pits and grooves.
+TEST(ToothForm, TableOfFigures) {
+    fmt::print(
+        "| tooth | height of contour, buccal and lingual, share of the crown | pits under the cusps [mm] | "
+        "between mesial and distal pit, share of the width | deepest groove under the cusps [mm] |\n");
+    for (const Published& t : kPublished) {
+        SCOPED_TRACE(t.fdi);
+        const ToothForm form(t.fdi, kAverage);
+        const std::vector<Landmark> marks = form.landmarks();
+        const double buccal = contourShare(form, form.buccalSign()), lingual = contourShare(form, -form.buccalSign());
+        const bool isPosterior = t.fdi % 10 >= 4;
+        // Cervical third all round, of premolars and molars lingually the middle one.
+        EXPECT_GT(buccal, 0.05);
+        EXPECT_LT(buccal, 0.42);
+        EXPECT_GT(lingual, isPosterior ? 0.30 : 0.05);
+        EXPECT_LT(lingual, isPosterior ? 0.67 : 0.42);
+        double tips = 0.0, deepest = 0.0;
+        const std::vector<Landmark> cusps = of(LandmarkKind::cuspTip, marks);
+        for (const Landmark& m : cusps)
+            tips += m.pointsMm[0].z() / static_cast<double>(cusps.size());
+        std::string pits;
+        for (const Landmark& m : of(LandmarkKind::pit, marks))
+            if (isPosterior)
+                pits += fmt::format("{}{} {:.1f}", pits.empty() ? "" : ", ", m.name, tips - m.pointsMm[0].z());
+        for (const Landmark& m : of(LandmarkKind::fissure, marks))
+            for (const Vec3& p : m.pointsMm)
+                if (m.name == "central" || t.fdi == 44 || t.fdi == 45) deepest = std::max(deepest, tips - p.z());
+        const auto place = [&](const char* name) -> const Landmark* {
+            for (const Landmark& m : marks)
+                if (m.kind == LandmarkKind::pit && m.name == name) return &m;
+            return nullptr;
+        };
+        const Landmark *mesial = place("mesial"), *distal = place("distal");
+        std::string apart;
+        if (isPosterior && mesial && distal) {
+            const double share = (mesial->pointsMm[0].x() - distal->pointsMm[0].x()) / form.mesiodistalMm();
+            apart = fmt::format("{:.2f}", share);
+            EXPECT_GT(share, 0.2);
+            EXPECT_LT(share, 0.75);
+        }
+        if (isPosterior) {
+            EXPECT_GT(deepest, 1.0);
+            EXPECT_LT(deepest, 3.5);
+        }
+        fmt::print("| {} | {:.2f}, {:.2f} | {} | {} | {} |\n", t.fdi, buccal, lingual, pits, apart,
+                   isPosterior ? fmt::format("{:.1f}", deepest) : "");
+    }
+}
+
 TEST(ToothForm, FeaturesOfTheReference) {
     // The first lower molar's mesiobuccal groove ends in a pit in the middle third.
     const ToothForm molar(46, kAverage);

@@ -18,51 +18,11 @@ using test::DicomMaker;
 using testing::Contains;
 using testing::HasSubstr;
 
-/// Blobs where the axes begin and on each of them; right-handed in columns, rows, slices.
-constexpr std::array<float, 4> kLevels{60, 120, 180, 240};
-
-Volume phantom() {
-    Volume v;
-    v.grid.size = {24, 18, 10};
-    v.grid.spacingMm = core::Vec3::Constant(0.2);
-    v.values.assign(v.grid.count(), 0.0f);
-    const std::array<std::array<int, 3>, 4> begins{{{4, 4, 1}, {16, 4, 1}, {4, 12, 1}, {4, 4, 7}}};
-    for (std::size_t blob = 0; blob < 4; ++blob)
-        for (int k = 0; k < 2; ++k)
-            for (int j = 0; j < 4; ++j)
-                for (int i = 0; i < 4; ++i)
-                    v.values[v.grid.index(begins[blob][0] + i, begins[blob][1] + j, begins[blob][2] + k)] =
-                        kLevels[blob];
-    return v;
-}
-
-/// +1: as it was made; -1: its mirror image; 0: blobs are missing.
-int sideOf(const Volume& v) {
-    std::array<core::Vec3, 4> sum;
-    std::array<int, 4> count{};
-    sum.fill(core::Vec3::Zero());
-    for (int k = 0; k < v.grid.size[2]; ++k)
-        for (int j = 0; j < v.grid.size[1]; ++j)
-            for (int i = 0; i < v.grid.size[0]; ++i)
-                for (std::size_t blob = 0; blob < 4; ++blob)
-                    if (std::abs(v.values[v.grid.index(i, j, k)] - kLevels[blob]) < 20.0f) {
-                        sum[blob] += v.grid.toMm(core::Vec3(i, j, k));
-                        ++count[blob];
-                    }
-    for (std::size_t blob = 0; blob < 4; ++blob) {
-        if (count[blob] == 0) return 0;
-        sum[blob] /= count[blob];
-    }
-    core::Mat3 axes;
-    axes << sum[1] - sum[0], sum[2] - sum[0], sum[3] - sum[0];
-    return axes.determinant() > 0.0 ? 1 : -1;
-}
-
 class Handedness : public testing::Test {
   protected:
     test::TemporaryFolder temporary_;
     fs::path at_ = temporary_.path() / "scan";
-    const Volume phantom_ = phantom();
+    const Volume phantom_ = test::chiralPhantom();
     int cases_ = 0;
 
     /// `side` 0: nobody can tell.
@@ -82,14 +42,14 @@ class Handedness : public testing::Test {
             else
                 EXPECT_THAT(series.notes, testing::Not(isTold)) << what;
         }
-        const int seen = sideOf(scan.volume);
+        const int seen = test::sideOf(scan.volume);
         if (side == 0)
             EXPECT_NE(seen, 0) << what;
         else
             EXPECT_EQ(seen, side) << what;
         settings.reverseSlices = true;
         const Scan turned = readScan(at_, settings);
-        EXPECT_EQ(sideOf(turned.volume), -seen) << what;
+        EXPECT_EQ(test::sideOf(turned.volume), -seen) << what;
         EXPECT_TRUE(turned.volume.grid.originMm.isApprox(scan.volume.grid.originMm)) << what;
         EXPECT_THAT(turned.series.notes, Contains(HasSubstr("read from the other end"))) << what;
         EXPECT_THAT(turned.series.notes, testing::Not(isTold)) << what;

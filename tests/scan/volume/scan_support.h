@@ -38,6 +38,46 @@ inline volume::Volume sampleVolume(std::array<int, 3> size = {23, 17, 9}, double
     return v;
 }
 
+/// Blobs where the axes begin and on each of them; right-handed in columns, rows, slices.
+inline constexpr std::array<float, 4> kLevels{60, 120, 180, 240};
+
+inline volume::Volume chiralPhantom() {
+    volume::Volume v;
+    v.grid.size = {24, 18, 10};
+    v.grid.spacingMm = core::Vec3::Constant(0.2);
+    v.values.assign(v.grid.count(), 0.0f);
+    const std::array<std::array<int, 3>, 4> begins{{{4, 4, 1}, {16, 4, 1}, {4, 12, 1}, {4, 4, 7}}};
+    for (std::size_t blob = 0; blob < 4; ++blob)
+        for (int k = 0; k < 2; ++k)
+            for (int j = 0; j < 4; ++j)
+                for (int i = 0; i < 4; ++i)
+                    v.values[v.grid.index(begins[blob][0] + i, begins[blob][1] + j, begins[blob][2] + k)] =
+                        kLevels[blob];
+    return v;
+}
+
+/// +1: as it was made; -1: its mirror image; 0: blobs are missing.
+inline int sideOf(const volume::Volume& v) {
+    std::array<core::Vec3, 4> sum;
+    std::array<int, 4> count{};
+    sum.fill(core::Vec3::Zero());
+    for (int k = 0; k < v.grid.size[2]; ++k)
+        for (int j = 0; j < v.grid.size[1]; ++j)
+            for (int i = 0; i < v.grid.size[0]; ++i)
+                for (std::size_t blob = 0; blob < 4; ++blob)
+                    if (std::abs(v.values[v.grid.index(i, j, k)] - kLevels[blob]) < 20.0f) {
+                        sum[blob] += v.grid.toMm(core::Vec3(i, j, k));
+                        ++count[blob];
+                    }
+    for (std::size_t blob = 0; blob < 4; ++blob) {
+        if (count[blob] == 0) return 0;
+        sum[blob] /= count[blob];
+    }
+    core::Mat3 axes;
+    axes << sum[1] - sum[0], sum[2] - sum[0], sum[3] - sum[0];
+    return axes.determinant() > 0.0 ? 1 : -1;
+}
+
 /// Of an oblique scanner: rows and columns along no axis.
 inline core::Mat3 obliqueAxes() {
     return core::Quat(Eigen::AngleAxisd(0.4, core::Vec3(1, 2, -0.5).normalized())).toRotationMatrix();

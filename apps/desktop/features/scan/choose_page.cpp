@@ -16,6 +16,7 @@
 #include <QUrl>
 #include <QVBoxLayout>
 
+#include "desktop/features/scan/reading_fields.h"
 #include "desktop/widgets/icon_factory.h"
 #include "desktop/widgets/parts.h"
 #include "desktop/widgets/theme.h"
@@ -159,11 +160,8 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     inSpacing->addWidget(molar_);
     inDetails->addWidget(spacingBox_);
 
-    labels_ = named(new QCheckBox(tr("These are tissues already, not grey values"), details_), "scanIsLabels",
-                    tr("This is a label volume"),
-                    tr("A label volume from another program: teeth by FDI numbers, or 0 nothing, 1 caries, 2 enamel, 3 "
-                       "dentine, 4 pulp, 5 filling"));
-    inDetails->addWidget(labels_);
+    reading_ = new ReadingFields(model, questions, details_);
+    inDetails->addWidget(reading_);
     inDetails->addStretch(1);
     scroll->setWidget(details_);
     row->addWidget(scroll, 5);
@@ -196,9 +194,6 @@ ChoosePage::ChoosePage(ScanModel& model, ScanQuestions& questions, QWidget* pare
     });
     connect(reverse_, &QCheckBox::toggled, this, [this](bool on) {
         if (!showing_) decide([on](scan_case::ScanJob& job) { job.reverseSlices = on; });
-    });
-    connect(labels_, &QCheckBox::toggled, this, [this](bool on) {
-        if (!showing_) decide([on](scan_case::ScanJob& job) { job.isLabels = on; });
     });
     connect(estimate_, &QPushButton::clicked, this, [this] { this->model().estimateSpacing(); });
     connect(&model, &ScanModel::spacingEstimated, this, [this] {
@@ -339,7 +334,7 @@ void ChoosePage::showDetails() {
 void ChoosePage::showJob() {
     showing_ = true;
     reverse_->setChecked(model().job().reverseSlices);
-    labels_->setChecked(model().isLabels());
+    reading_->showJob();
     const auto& source = model().job().source;
     dropText_->setText(source.empty()
                            ? tr("Drop a folder of slices, a ZIP or a file here")

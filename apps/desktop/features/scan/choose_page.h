@@ -24,6 +24,8 @@ struct ScanQuestions {
     std::function<bool(const QString& file)> showPage;
 };
 
+class ReadingFields;
+
 class ChoosePage : public ScanPage {
     Q_OBJECT
   public:
@@ -53,7 +55,8 @@ class ChoosePage : public ScanPage {
     QListWidget* list_;
     DecimalField *within_, *between_;
     QPushButton* estimate_;
-    QCheckBox *reverse_, *labels_;
+    QCheckBox* reverse_;
+    ReadingFields* reading_;
     bool showing_ = false;
 };
 

@@ -165,7 +165,7 @@ std::shared_ptr<const FileSet> FileSet::open(const fs::path& path, const Archive
                 set->entries_.push_back({beside, fs::file_size(set->root_ / beside, ec)});
         const std::string extension = extensionOf(name);
         if (extension == ".toml" || extension == ".nhdr" || extension == ".mhd" || extension == ".hdr" ||
-            extension == ".nrrd" || extension == ".mha") {
+            extension == ".nrrd" || extension == ".mha" || upper.ends_with(".HDR.GZ")) {
             std::size_t count = 0;
             for (const fs::directory_entry& e : fs::directory_iterator(set->root_, ec)) {
                 const std::string other = e.path().filename().string();

@@ -112,12 +112,15 @@ Candidate openNifti(const Files& files, std::size_t index) {
         return core::Error(what, out.where, remedy);
     };
     Input input = files->open(index);
-    std::array<std::byte, 2> magic{};
-    (void)input.readAt(0, magic.data(), 2);
+    const auto isPacked = [](Input& file) {
+        std::array<std::byte, 2> magic{};
+        (void)file.readAt(0, magic.data(), 2);
+        return magic == std::array{std::byte{0x1f}, std::byte{0x8b}};
+    };
     Samples samples;
     samples.files = files;
     samples.file = index;
-    samples.isPacked = magic == std::array{std::byte{0x1f}, std::byte{0x8b}};
+    samples.isPacked = isPacked(input);
     Reader header;
     const std::size_t got = samples.isPacked ? unpackHead(input, header.bytes.data(), header.bytes.size())
                                              : input.readAt(0, header.bytes.data(), header.bytes.size());
@@ -181,11 +184,15 @@ Candidate openNifti(const Files& files, std::size_t index) {
     } else {
         const std::string& name = files->entries()[index].name;
         std::string image = name.substr(folderOf(name).size());
-        if (const std::size_t dot = image.rfind(".hdr"); dot != std::string::npos) image.replace(dot, 4, ".img");
-        const auto found = files->find(name, image);
+        if (const std::size_t dot = image.rfind(".hdr"); dot != std::string::npos)
+            image.replace(dot, image.size() - dot, ".img");
+        auto found = files->find(name, image);
+        if (!found) found = files->find(name, image + ".gz");
         if (!found || *found == index)
             throw wrong(fmt::format("its data file \"{}\" is missing", shown(image)), "put it beside the header");
         samples.file = *found;
+        Input data = files->open(*found);
+        samples.isPacked = isPacked(data);
     }
     (samples.isPacked ? samples.skip : samples.offset) = begin;
 

@@ -184,7 +184,8 @@ Kind kindOf(const FileSet& files, std::size_t index, std::array<std::uint8_t, 35
         return Kind::picture;
     if (begins("NRRD000")) return Kind::nrrd;
     if (begins("n+1", 344) || begins("ni1", 344) || begins("n+2", 4) || begins("ni2", 4)) return Kind::nifti;
-    if (begins("\x1f\x8b") && name.size() > 7 && lowered(name).ends_with(".nii.gz")) return Kind::nifti;
+    const bool isPackedNifti = lowered(name).ends_with(".nii.gz") || lowered(name).ends_with(".hdr.gz");
+    if (begins("\x1f\x8b") && isPackedNifti) return Kind::nifti;
     if (extension == ".mha" || extension == ".mhd") return Kind::metaImage;
     if (extension == ".toml") return Kind::description;
     // DICOM without its preamble: group 0002 or 0008, little endian, and an element of the low ones.
@@ -194,7 +195,7 @@ Kind kindOf(const FileSet& files, std::size_t index, std::array<std::uint8_t, 35
     for (const char* picture : {".bmp", ".jpg", ".jpeg", ".png", ".tif", ".tiff"})
         if (extension == picture) return Kind::picture;
     if (extension == ".nrrd" || extension == ".nhdr") return Kind::nrrd;
-    if (extension == ".nii" || lowered(name).ends_with(".nii.gz")) return Kind::nifti;
+    if (extension == ".nii" || isPackedNifti) return Kind::nifti;
     if (extension == ".raw" || extension == ".img" || extension == ".bin" || extension == ".zraw") return Kind::data;
     return Kind::other;
 }
@@ -392,6 +393,12 @@ std::vector<Candidate> findCandidates(const Files& files, const core::Progress& 
                 break;
         }
     }
+    // Among slices a file with their ending that is none may be one that broke off in its first bytes.
+    for (std::size_t i = 0; i < count && listed.empty(); ++i)
+        if (kinds[i] == Kind::other && std::any_of(dicom.begin(), dicom.end(), [&](std::size_t slice) {
+                return extensionOf(files->entries()[slice].name) == extensionOf(files->entries()[i].name);
+            }))
+            failures.emplace_back("it is no DICOM file", files->where(i), "copy it again");
     if (!dicom.empty())
         for (Candidate& c : findDicom(files, dicom, failures, core::part(progress, 0.2, 0.9)))
             found.push_back(std::move(c));

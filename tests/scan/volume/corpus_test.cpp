@@ -459,7 +459,7 @@ TEST_F(Corpus, AsOtherProgramsWriteThem) {
             const bool isRight = wrong(scan, made).empty();
             unharmed += isRight;
             said += !isRight;
-            EXPECT_TRUE(isRight || !scan.series.notes.empty()) << which << ", broken off";
+            EXPECT_TRUE(isRight || !scan.series.notes.empty()) << which << ", broken off: " << wrong(scan, made);
         } catch (const core::Error& e) {
             ++refused;
             EXPECT_FALSE(std::string(e.what()).empty()) << which;

@@ -515,10 +515,16 @@ std::vector<Candidate> findDicom(const Files& files, const std::vector<std::size
                                     withoutPixels, withoutPixels == 1 ? "" : "s", colour),
                         files->where(), "name the folder with the slices of the scan")
                 .as("no-scan", {"DICOM"}));
-    if (colour > 0)
-        for (Candidate& c : found)
+    for (Candidate& c : found) {
+        if (colour > 0)
             c.series.notes.push_back(
                 fmt::format("{} colour picture{} left out", colour, colour == 1 ? " was" : "s were"));
+        // A report, or a slice that broke off in its header.
+        if (withoutPixels > 0)
+            c.series.notes.push_back(fmt::format("{} DICOM file{} left out: no pixels are in {}", withoutPixels,
+                                                 withoutPixels == 1 ? " was" : "s were",
+                                                 withoutPixels == 1 ? "it" : "them"));
+    }
     return found;
 }
 

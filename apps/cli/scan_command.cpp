@@ -100,6 +100,7 @@ struct ScanOptions {
         mesial, name, kind, tissues, intraoral, intraoralUnit = "mm", percent, pictures;
     std::vector<std::string> lesions, cuts, marks;
     double voxelMm = 0.0;
+    double openingMm = -1.0;  ///< below 0: not given
     std::size_t faces = 0, threads = 0;
     int tooth = 0;
     bool reverseSlices = false, labels = false, noDamp = false, noCaries = false, noSmooth = false, tableTwo = false,
@@ -147,6 +148,7 @@ ScanJob jobOf(const ScanOptions& o) {
     }
     if (o.labels) job.isLabels = true;
     if (!o.grey.empty()) job.grey = o.grey;
+    if (o.openingMm >= 0.0) job.openingMm = o.openingMm;
     if (!o.numbers.empty()) {
         job.isLabels = true;
         job.labelNumbers = segmentation::labelNumbersByName(o.numbers);
@@ -497,6 +499,10 @@ void addJobOptions(Command& command, ScanOptions& o) {
     command.option("--numbers", o.numbers, "what labels' numbers are: tissues, fdi, universal or consecutive")
         .check(oneOf({"tissues", "fdi", "universal", "consecutive"}));
     command.option("--grey", o.grey, "the scan that a mouth's labels are of: tells the tissues in each tooth");
+    command
+        .option("--opening", o.openingMm,
+                "of a mouth's labels: open the jaws so far between the incisal edges [mm], else by 40; 0: as scanned")
+        .check(range(0.0, scan_case::kWidestOpeningMm));
     command.option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
     command.option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
     command.option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");

@@ -148,6 +148,7 @@ TEST(MouthOfLabels, EachToothIsWhereAndWhatItWas) {
     job.source = written(labels, folder.path());
     job.placing.fdiNumber = 46;
     job.percents = {100.0};
+    job.openingMm = 0.0;
     const ScanResult result = runScanJob(job);
     EXPECT_TRUE(result.isMouth());
     EXPECT_THAT(result.notes(), Contains(HasSubstr("labels of teeth, not grey values")));
@@ -194,6 +195,20 @@ TEST(MouthOfLabels, EachToothIsWhereAndWhatItWas) {
     const cases::Case back = cases::readCase(folder.path() / "mouth");
     EXPECT_EQ(back.others.size(), made.others.size());
     EXPECT_TRUE(cases::checkCase(back).empty() || !cases::checkCase(back).front().isError);
+
+    // Opened for work: the upper teeth go up as one, all else stays.
+    job.openingMm = 30.0;
+    const ScanResult opened = runScanJob(job, {}, &result);
+    EXPECT_EQ(opened.full, result.full);
+    EXPECT_THAT(opened.notes(), Contains(HasSubstr("opened to 30 mm")));
+    const cases::Case& wide = opened.cases.front().toothCase;
+    for (std::size_t i = 0; i < made.others.size(); ++i) {
+        const Pose &was = made.others[i].inCase, &is = wide.others[i].inCase;
+        if (made.others[i].fdiNumber < 30)
+            EXPECT_GT((is.positionMm - was.positionMm).norm(), 8.0) << made.others[i].fdiNumber;
+        else
+            EXPECT_LT((is.positionMm - was.positionMm).norm(), 1e-9) << made.others[i].fdiNumber;
+    }
 
     // Another of its teeth: the labels are not read anew, and it is the other way round.
     job.placing.fdiNumber = 16;

@@ -100,9 +100,11 @@ TEST(ScanJobFile, EachDecisionAloneComesBack) {
     EXPECT_EQ(scanJobFromToml(toToml(two), "x").segmentation.marks.size(), 1u);
     ScanJob three;
     three.reverseSlices = true;
+    three.openingMm = 25.0;
     three.regionMm = std::array{Vec3(1, 2.5, 3), Vec3(-4, 5, 6)};
     const ScanJob again = scanJobFromToml(toToml(three), "x");
     EXPECT_TRUE(again.reverseSlices);
+    EXPECT_EQ(again.openingMm, 25.0);
     EXPECT_EQ(again.regionMm, three.regionMm);
     EXPECT_FALSE(scanJobFromToml(toToml(two), "x").reverseSlices);
     const volume::ReadSettings settings = readSettings(again);

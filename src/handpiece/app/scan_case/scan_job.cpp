@@ -18,6 +18,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/case_check.h"
 #include "handpiece/model/case/package.h"
+#include "handpiece/model/case/work_on.h"
 #include "handpiece/model/field/distance_field.h"
 #include "handpiece/scan/landmarks/find_landmarks.h"
 
@@ -197,7 +198,14 @@ void decimate(ScanResult& result, const core::Progress& progress) {
         registration::CaseText own = text;
         if (job.faces == 0 && job.percents.size() > 1) own.name += fmt::format(" ({} %)", shown(percent));
         made.toothCase = registration::makeCase(*made.surfaces, result.placed, own, result.scenery);
-        if (result.isMouth()) addOthers(result, percent, made.toothCase);
+        if (result.isMouth()) {
+            addOthers(result, percent, made.toothCase);
+            if (job.openingMm > 0.0 && cases::openJaws(made.toothCase, job.openingMm) && result.cases.empty())
+                result.caseNotes.push_back(fmt::format(
+                    "the jaws are opened to {:g} mm between the incisal edges, about a hinge as people have "
+                    "it on average; an opening of 0 leaves them as they were scanned",
+                    job.openingMm));
+        }
         result.cases.push_back(std::move(made));
     };
     if (job.faces > 0) {

@@ -23,6 +23,8 @@
 
 namespace handpiece::scan_case {
 
+inline constexpr double kWorkOpeningMm = 40.0, kWidestOpeningMm = 60.0;
+
 /// Everything a person decides between a scan and a case. Same job, same scan: the same bytes of case. `source`,
 /// `intraoral` and `tissuesFile` stay in the job's own file: no case, report or message of success holds them.
 struct ScanJob {
@@ -53,7 +55,9 @@ struct ScanJob {
     std::string name = "scanned tooth";
     std::string kind;
     std::filesystem::path tissuesFile;  ///< table of tissues of one's own; empty: as shipped
-    bool scenery = false;               ///< what stands around the tooth in the scan, as far as kSceneryReachMm
+    double openingMm =
+        kWorkOpeningMm;    ///< of a mouth: its jaws are opened so far between the incisal edges; 0: as scanned
+    bool scenery = false;  ///< what stands around the tooth in the scan, as far as kSceneryReachMm
     // How fine.
     std::vector<double> percents;  ///< a case each; empty: one case, with as many faces as the standard field can use
     std::size_t faces = 0;         ///< of all surfaces together, instead of percents; 0: by percents

@@ -257,6 +257,7 @@ std::string toToml(const ScanJob& job) {
     if (job.placing.fdiNumber != 0) top.put("fdi", std::to_string(job.placing.fdiNumber));
     top.text("tissues", job.tissuesFile.string());
     top.flag("scenery", job.scenery, usual.scenery);
+    top.numberUnless("opening_mm", job.openingMm, usual.openingMm);
     if (job.percents != usual.percents) {
         std::string percents;
         for (const double p : job.percents)
@@ -282,7 +283,7 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
     table.allowOnly({"format",     "source",      "series",        "spacing_mm",  "reverse_slices", "region_mm",
                      "grey",       "labels",      "label_numbers", "label_order", "smooth",         "name",
                      "kind",       "fdi",         "tissues",       "scenery",     "percents",       "faces",
-                     "tooth_from", "enamel_from", "segmentation",  "intraoral",   "placing"});
+                     "tooth_from", "enamel_from", "segmentation",  "intraoral",   "placing",        "opening_mm"});
     ScanJob job;
     job.source = table.text("source").value_or("");
     job.series = table.text("series").value_or("");
@@ -313,6 +314,7 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
         static_cast<int>(checked(table, "fdi", static_cast<double>(table.integer("fdi").value_or(0)), 0.0, 85.0));
     job.tissuesFile = table.text("tissues").value_or("");
     job.scenery = table.flag("scenery").value_or(false);
+    take(table, "opening_mm", job.openingMm, 0.0, kWidestOpeningMm);
     if (table.has("percents")) {
         job.percents = table.numbers("percents");
         if (job.percents.empty())

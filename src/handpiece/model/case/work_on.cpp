@@ -51,28 +51,6 @@ void chooseCuttable(Case& c) {
                            comesNear(own, other.surface(), toOwn * closed(other.fdiNumber, other.inCase));
 }
 
-Case inOcclusion(Case c) {
-    // Of the other arch than the own tooth's; its own stays where it is.
-    const Pose moved = isLowerTooth(c.fdiNumber) ? c.opening : c.opening.inverse();
-    const auto isOther = [&](int fdi) { return fdi != 0 && isLowerTooth(fdi) != isLowerTooth(c.fdiNumber); };
-    Vec3 middle[2] = {Vec3::Zero(), Vec3::Zero()};  // of this arch's teeth, of the other's
-    double count[2] = {1.0, 0.0};
-    for (const PlacedTooth& other : c.others) {
-        const int arch = isOther(other.fdiNumber) ? 1 : 0;
-        middle[arch] += other.inCase.positionMm;
-        count[arch] += 1.0;
-    }
-    if (count[1] == 0.0) return c;
-    const auto distance = [&](const Vec3& p, int arch) { return (p - middle[arch] / count[arch]).norm(); };
-    for (Part& part : c.scenery)
-        if (const Vec3 at = part.mesh.bounds().centre(); distance(at, 1) < distance(at, 0))
-            part.mesh = geometry::transformed(std::move(part.mesh), moved);
-    for (PlacedTooth& other : c.others)
-        if (isOther(other.fdiNumber)) other.inCase = (moved * other.inCase).normalised();
-    c.opening = {};
-    return c;
-}
-
 Case workOn(Case c, int fdi) {
     if (fdi != 0 && fdi == c.fdiNumber) return c;
     const auto found =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 /// @file
-/// Which tooth of a mouth is worked on, which others its bur may nick, and its jaws closed.
+/// Which tooth of a mouth is worked on, which others its bur may nick, and its jaws closed and opened.
 
 #include "handpiece/model/case/case.h"
 
@@ -19,5 +19,11 @@ void chooseCuttable(Case& toothCase);
 /// The same mouth with its jaws closed, in the frame of its own tooth; what stands around goes with the arch whose
 /// teeth it is nearer to. As it is when nothing says how it was opened.
 [[nodiscard]] Case inOcclusion(Case toothCase);
+
+/// Opens the jaws until the incisal edges stand so far apart [mm], by turning the lower jaw about a hinge where
+/// Bonwill's triangle has it. Which way is up and in front is told by the teeth and their FDI numbers; where the front
+/// teeth are missing their place is guessed from the others. False, and nothing is moved, where one of the arches is
+/// missing or the jaws stand wider open already.
+bool openJaws(Case& toothCase, double incisalOpeningMm);
 
 }  // namespace handpiece::cases

@@ -3,6 +3,7 @@
 // packed frame.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstring>
 #include <mutex>
 #include <optional>
@@ -40,8 +41,9 @@ std::optional<Packing> packingOf(const std::string& syntax) {
 }
 
 /// Columns, rows and components as the packed picture itself tells them, or nothing: GDCM's decoders trust these.
-/// Of a JPEG the segments that say nothing of the pixels are taken out.
-std::optional<std::array<unsigned, 3>> packedSize(Packing packing, std::vector<char>& data) {
+/// Of a JPEG the segments that say nothing of the pixels are taken out. Values of more bits than the file says are
+/// nothing: GDCM's decoder shifts by the difference.
+std::optional<std::array<unsigned, 3>> packedSize(Packing packing, unsigned bits, std::vector<char>& data) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned>(static_cast<unsigned char>(data[i])); };
     const auto two = [&](std::size_t i) { return byte(i) << 8 | byte(i + 1); };
     const auto four = [&](std::size_t i) { return two(i) << 16 | two(i + 2); };
@@ -49,6 +51,7 @@ std::optional<std::array<unsigned, 3>> packedSize(Packing packing, std::vector<c
         // SOC and SIZ stand first; files in their box format are not allowed in DICOM.
         if (data.size() < 48 || two(0) != 0xff4f || two(2) != 0xff51) return {};
         const unsigned count = two(40);
+        if ((byte(42) & 0x7f) + 1 > bits) return {};
         if (four(16) != 0 || four(20) != 0 || (count == 1 && (byte(43) != 1 || byte(44) != 1))) return {};
         // Segments within the data up to the first tile's own, how it is coded among them: GDCM looks for that by leaps
         // of the lengths it reads, without looking where the data end.
@@ -87,6 +90,7 @@ std::optional<std::array<unsigned, 3>> packedSize(Packing packing, std::vector<c
         const bool isNote = (marker >= 0xe0 && marker <= 0xef) || marker == 0xfe;
         if (isFrame) {
             if (size || length < 11 || length != 8 + 3 * byte(at + 9)) return {};
+            if (byte(at + 4) < 2 || byte(at + 4) > std::min(bits, 16u)) return {};
             size = std::array{two(at + 7), two(at + 5), byte(at + 9)};
             component = byte(at + 10);
         } else if (marker == 0xda) {
@@ -196,7 +200,7 @@ std::vector<std::byte> unpack(Input& input, const DicomHeader& header, int index
         return bytes;
     }
     {
-        const auto size = packedSize(packing, data);
+        const auto size = packedSize(packing, static_cast<unsigned>(header.allocated), data);
         if (!size) throw wrong("its pixel data is not packed as its transfer syntax says, or damaged");
         if ((*size)[0] != static_cast<unsigned>(header.columns) || (*size)[1] != static_cast<unsigned>(header.rows) ||
             (*size)[2] != 1)

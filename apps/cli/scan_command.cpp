@@ -219,8 +219,16 @@ void requireFolder(const fs::path& out) {
 
 ScanResult worked(const ScanOptions& o, const ScanJob& job, ScanStage last) {
     core::setThreadCount(o.threads);
-    // Before the work, so that a job that is cancelled can be taken up again.
-    if (!o.saveJob.empty()) scan_case::writeScanJob(job, o.saveJob);
+    // Before the work, so that a job that is cancelled can be taken up again. Nothing but a job is replaced by one.
+    if (!o.saveJob.empty()) {
+        if (core::isThere(o.saveJob)) try {
+                (void)scan_case::readScanJob(o.saveJob);
+            } catch (const core::Error&) {
+                throw core::Error("this file is no job of a scan, and is not replaced", o.saveJob,
+                                  "name another file for --save-job");
+            }
+        scan_case::writeScanJob(job, o.saveJob);
+    }
     StageBars bars;
     ScanResult result = scan_case::runScanJob(job, bars.listener(), nullptr, last);
     bars.finish();
@@ -283,15 +291,31 @@ Json teethJson(const std::vector<segmentation::Candidate>& teeth) {
     return list;
 }
 
-std::vector<segmentation::Candidate> teethOf(const ScanOptions& o, const volume::Series& series) {
-    volume::ReadSettings settings = scan_case::readSettings(jobOf(o));
+struct FoundTeeth {
+    std::vector<segmentation::Candidate> teeth;         ///< of grey values
+    std::vector<segmentation::LabelledTooth> labelled;  ///< or of labels
+    std::vector<std::string> notes;                     ///< of those
+    std::size_t others = 0;
+};
+
+FoundTeeth teethOf(const ScanOptions& o, const volume::Series& series) {
+    const ScanJob job = jobOf(o);
+    volume::ReadSettings settings = scan_case::readSettings(job);
     settings.series = series.id;
     studies::ProgressBar bar("looking for teeth");
     const core::Progress progress = bar.listener();
     const volume::Scan scan = volume::readScan(o.path, settings, core::part(progress, 0.0, 0.3));
+    FoundTeeth found;
+    if (const auto labels = scan_case::readLabels(scan, job); labels && labels->key->isMouth) {
+        found.labelled = segmentation::teethOf(*labels->labels, *labels->key);
+        found.notes = labels->key->notes;
+        return found;
+    }
     const segmentation::Thresholds thresholds =
         segmentation::findThresholds(scan.volume, core::part(progress, 0.3, 0.5));
-    return segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
+    found.teeth = segmentation::findTeeth(scan.volume, thresholds, core::part(progress, 0.5, 1.0));
+    found.others = std::erase_if(found.teeth, [](const auto& c) { return !segmentation::isToothLike(c); });
+    return found;
 }
 
 void info(const ScanOptions& o) {
@@ -299,8 +323,7 @@ void info(const ScanOptions& o) {
     studies::ProgressBar bar("looking into the scan");
     const std::vector<volume::Series> all = volume::findSeries(o.path, bar.listener());
     bar.finish();
-    std::vector<segmentation::Candidate> teeth;
-    std::size_t others = 0;
+    FoundTeeth found;
     if (o.teeth) {
         if (all.size() > 1 && o.series.empty())
             throw core::Error(fmt::format("there are {} series", all.size()), "--teeth", "name one with --series");
@@ -308,9 +331,9 @@ void info(const ScanOptions& o) {
             std::find_if(all.begin(), all.end(), [&](const auto& s) { return o.series.empty() || s.id == o.series; });
         if (one == all.end())
             throw core::Error("there is no series of this name", o.series, "leave --teeth out to see those there are");
-        teeth = teethOf(o, *one);
-        others = std::erase_if(teeth, [](const auto& c) { return !segmentation::isToothLike(c); });
+        found = teethOf(o, *one);
     }
+    const auto& [teeth, labelled, labelNotes, others] = found;
     if (!o.pictures.empty()) {
         core::prepareOutputFolder(o.pictures);
         for (const volume::Series& s : all)
@@ -334,6 +357,12 @@ void info(const ScanOptions& o) {
         if (o.teeth) {
             out["teeth"] = teethJson(teeth);
             out["other_hard_things"] = others;
+            if (!labelled.empty()) {
+                Json named = Json::array();
+                for (const segmentation::LabelledTooth& tooth : labelled)
+                    named.push_back({{"fdi", tooth.fdi}, {"volume_mm3", tooth.volumeMm3}});
+                out["labelled_teeth"] = std::move(named);
+            }
         }
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
         return;
@@ -350,7 +379,11 @@ void info(const ScanOptions& o) {
                    s.bits);
         tellNotes(s.notes);
     }
-    if (o.teeth && teeth.empty()) fmt::print("no tooth was told apart in it\n");
+    tellNotes(labelNotes);
+    for (const segmentation::LabelledTooth& tooth : labelled)
+        fmt::print("labelled tooth: --tooth {}  {:.0f} mm3{}\n", tooth.fdi, tooth.volumeMm3,
+                   tooth.isCutOff ? ", cut off by the border" : "");
+    if (o.teeth && teeth.empty() && labelled.empty()) fmt::print("no tooth was told apart in it\n");
     for (const segmentation::Candidate& c : teeth)
         fmt::print("tooth: --at {:.2f},{:.2f},{:.2f}  {:.0f} mm3, {:.1f} x {:.1f} x {:.1f} mm{}\n", c.atMm.x(),
                    c.atMm.y(), c.atMm.z(), c.volumeMm3, c.boundsMm.size().x(), c.boundsMm.size().y(),

@@ -2189,8 +2189,24 @@
         <translation>このラベルの番号からは、どれがどの歯か分かりません。</translation>
     </message>
     <message>
-        <source>Save them with FDI numbers, 11 to 48, or with names.</source>
-        <translation>FDI の番号（11〜48）または名前を付けて保存してください。</translation>
+        <source>Choose under &quot;What the numbers mean&quot; how they count.</source>
+        <translation>「番号の意味」で、番号の付け方を選んでください。</translation>
+    </message>
+    <message>
+        <source>This file holds %1 whole numbers and nothing between them: labels, not grey values.</source>
+        <translation>このファイルには %1 種類の整数だけがあり、中間の値がありません。濃度値ではなくラベルです。</translation>
+    </message>
+    <message>
+        <source>Tick &quot;These are tissues already, not grey values&quot;, and choose what the numbers mean.</source>
+        <translation>「濃度値ではなく、組織のラベルである」に印を付け、番号の意味を選んでください。</translation>
+    </message>
+    <message>
+        <source>In the scan the teeth are not where the labels have them.</source>
+        <translation>スキャンの歯の位置が、ラベルと合いません。</translation>
+    </message>
+    <message>
+        <source>Choose the scan that the labels were made from, or do without.</source>
+        <translation>ラベルの元になったスキャンを選ぶか、使わずに進めてください。</translation>
     </message>
     <message>
         <source>These labels tell jaws and rows of teeth, but not one tooth from the next.</source>

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <numbers>
+#include <random>
 
 #include "handpiece/app/scan_case/scan_job.h"
 #include "handpiece/base/core/portable_math.h"
@@ -219,6 +221,41 @@ TEST(MouthOfLabels, EachToothIsWhereAndWhatItWas) {
     // One that is not there is told with those that are.
     job.placing.fdiNumber = 11;
     EXPECT_THAT(errorOf([&] { (void)runScanJob(job, {}, &result); }), HasSubstr("15, 16, 44, 45, 46, 47"));
+}
+
+TEST(MouthOfLabels, TheScanThatTheyAreOfLiesWhereTheyDo) {
+    const volume::Labels labels = labelsOf(theMouth(), Vec3::Constant(0.5));
+    const test::TemporaryFolder folder;
+    std::mt19937_64 generator(test::seed());
+    for (const double shiftMm : {0.0, 4.0, 12.0}) {
+        volume::Volume grey;
+        grey.grid = labels.grid;
+        grey.grid.originMm.y() += shiftMm;
+        for (std::size_t n = 0; n < labels.values.size(); ++n) {
+            const auto k = static_cast<int>(n / (grey.grid.count() / static_cast<std::size_t>(grey.grid.size[2])));
+            // Crowns, near the plane where the jaws meet, are of enamel.
+            const double z = labels.grid.toMm(Vec3(0, 0, k)).z();
+            const double level = labels.values[n] < 11 ? 100.0 : std::abs(z) < 3.0 ? 3000.0 : 1800.0;
+            grey.values.push_back(static_cast<float>(std::round(level + test::uniform(generator, -40, 40))));
+        }
+        std::filesystem::remove_all(folder.path() / "grey");
+        volume::writeScan(grey, folder.path() / "grey", volume::ScanFormat::nrrd);
+        ScanJob job;
+        job.source = written(labels, folder.path());
+        job.placing.fdiNumber = 46;
+        job.grey = folder.path() / "grey" / "scan.nrrd";
+        if (shiftMm > 8.0) {
+            EXPECT_THAT(errorOf([&] { (void)runScanJob(job, {}, nullptr, ScanStage::segment); }),
+                        HasSubstr("another scan, or shifted"));
+            continue;
+        }
+        const ScanResult result = runScanJob(job, {}, nullptr, ScanStage::segment);
+        const auto isTold = Contains(HasSubstr("are they of this scan?"));
+        if (shiftMm > 0.0)
+            EXPECT_THAT(result.notes(), isTold);
+        else
+            EXPECT_THAT(result.notes(), ::testing::Not(isTold));
+    }
 }
 
 TEST(MouthOfLabels, AMirrorImageIsTold) {

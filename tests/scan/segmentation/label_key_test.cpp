@@ -43,6 +43,53 @@ LabelKey keyOf(const std::map<int, int>& counts, const std::vector<volume::Label
     return labelKeyOf(counted(counts), names, asked, "labels");
 }
 
+TEST(LabelKey, NamesThatCountAreNoFdiNumbers) {
+    const auto named = [](const std::string& word, std::initializer_list<int> numbers) {
+        std::vector<volume::LabelName> names;
+        int value = 1;
+        for (const int n : numbers)
+            names.push_back({value++, word + std::to_string(n)});
+        return names;
+    };
+    const std::map<int, int> three{{0, 9000}, {1, 400}, {2, 400}, {3, 400}};
+    // 19 and 20 are no FDI numbers, so 18 is none either.
+    EXPECT_THAT(test::errorOf([&] {
+                    (void)keyOf(three, named("Tooth ", {18, 19, 20}));
+                }),
+                testing::HasSubstr("may be FDI numbers, Universal numbers"));
+    EXPECT_THAT(test::errorOf([&] {
+                    (void)keyOf(three, named("tooth_", {2, 11, 31}));
+                }),
+                testing::HasSubstr("may be FDI numbers, Universal numbers"));
+    EXPECT_EQ(told(keyOf(three, named("Tooth ", {16, 17, 18})), 3), "tooth 18");
+    EXPECT_EQ(told(keyOf(three, named("fdi", {11, 12, 46})), 3), "tooth 46");
+    // 3D Slicer's own names for what nobody named.
+    EXPECT_FALSE(keyOf(three, named("Segment_", {11, 12, 13})).isMouth);
+    const LabelKey twice = keyOf(three, {{1, "tooth 36"}, {2, "fdi36"}, {3, "tooth 37"}, {3, "tooth 38"}});
+    EXPECT_THAT(twice.notes, testing::Contains(testing::HasSubstr("labels 1, 2 are all called tooth 36")));
+    EXPECT_THAT(twice.notes, testing::Contains(testing::HasSubstr("label 3 has several names")));
+    const LabelKey made = keyOf(three, {{1, "Implant 46"}, {2, "47 missing"}, {3, "tooth 45"}});
+    EXPECT_EQ(told(made, 1), "prosthesis");
+    EXPECT_EQ(told(made, 2), "not shown");
+}
+
+TEST(LabelKey, LabelsOfWhichNobodySaidSo) {
+    volume::Volume v;
+    v.grid.size = {100, 1, 1};
+    v.values.assign(100, 0.0f);
+    for (int n = 0; n < 28; ++n)
+        v.values[static_cast<std::size_t>(n)] = static_cast<float>(1 + n);
+    EXPECT_EQ(unsaidLabels(v, {}), 28);
+    v.values[99] = 0.5f;
+    EXPECT_EQ(unsaidLabels(v, {}), 0);
+    v.values[99] = 200.0f;
+    EXPECT_EQ(unsaidLabels(v, {}), 0);
+    v.values.assign(100, 0.0f);
+    v.values[3] = 1.0f;
+    EXPECT_EQ(unsaidLabels(v, {}), 0) << "a mask";
+    EXPECT_EQ(unsaidLabels(v, {{1, "Segment_1"}}), 1);
+}
+
 TEST(LabelKey, FdiNumbersWithWhatToothFairyHasBesideThem) {
     const LabelKey key = keyOf({{0, 9000},
                                 {1, 50000},

@@ -275,6 +275,7 @@ void ChoosePage::showSeries() {
 }
 
 void ChoosePage::showDetails() {
+    reading_->showJob();  // whether they are labels is known once they are read
     showing_ = true;
     const volume::Series* series = model().chosenSeries();
     details_->setVisible(series != nullptr);
@@ -304,6 +305,9 @@ void ChoosePage::showDetails() {
         // What was read says more than what was found: how, for instance, it was made to fit.
         for (const std::string& text : model().scan() ? model().scan()->scan->series.notes : series->notes)
             notes << QStringLiteral("•  ") + QString::fromStdString(text);
+        if (model().scan() && model().scan()->labelKey)
+            for (const std::string& text : model().scan()->labelKey->notes)
+                notes << QStringLiteral("•  ") + QString::fromStdString(text);
         notes_->setText(notes.join(QLatin1Char('\n')));
         notes_->setVisible(!notes.isEmpty());
         reverse_->setVisible(series->slices > 1);

@@ -414,6 +414,8 @@ void TissuePage::showPreview() {
                  .arg(tr("Together"), quantity(sum, 1, tr("mm³")));
     volumes_->setText(table);
     QStringList notes;
+    for (const std::string& text : preview->result.toothNotes)
+        notes << QString::fromStdString(text);
     for (const std::string& text : region->notes)
         notes << QString::fromStdString(text);
     notes_->setText(notes.join(QLatin1Char('\n')));

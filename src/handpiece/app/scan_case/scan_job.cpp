@@ -311,8 +311,17 @@ std::vector<std::string> ScanResult::notes() const {
 }
 
 std::optional<ReadLabels> readLabels(const volume::Scan& scan, const ScanJob& job) {
-    if (!job.isLabels && !segmentation::looksLikeMouth(scan.volume, scan.series.labelNames)) return std::nullopt;
     const std::string where = job.source.filename().string();
+    if (!job.isLabels && !segmentation::looksLikeMouth(scan.volume, scan.series.labelNames)) {
+        if (const int numbers = segmentation::unsaidLabels(scan.volume, scan.series.labelNames); numbers > 0)
+            throw core::Error(fmt::format("its values are {} whole numbers and nothing between them: these look like "
+                                          "labels, not like grey values",
+                                          numbers),
+                              where,
+                              "say that they are labels (--labels), and of teeth what their numbers are (--numbers)")
+                .as("labels-unsaid", {std::to_string(numbers)});
+        return std::nullopt;
+    }
     volume::Labels labels = volume::toLabels(scan.volume, where);
     segmentation::LabelKey key;
     if (!job.labelOrder.empty()) {

@@ -106,6 +106,32 @@ segmentation::Region regionOf(const ScanResult& result, const LabelledTooth& too
                                        settings, progress);
 }
 
+/// A scan that the labels are not of, or that is shifted against them, shows by what is dark in their teeth.
+void requireSamePlace(ScanResult& result) {
+    constexpr double kRefused = 0.35, kTold = 0.7;
+    using What = segmentation::LabelMeaning::What;
+    const volume::Grid &labels = result.labels->grid, &grey = result.grey->volume.grid;
+    std::size_t inTeeth = 0, bright = 0, n = 0;
+    for (int k = 0; k < labels.size[2]; ++k)
+        for (int j = 0; j < labels.size[1]; ++j)
+            for (int i = 0; i < labels.size[0]; ++i, ++n) {
+                if (result.labelKey->of[result.labels->values[n]].what != What::tooth) continue;
+                const auto at = grey.indexAt(labels.toMm(Vec3(i, j, k)));
+                if (!at) continue;
+                ++inTeeth;
+                if (result.grey->volume.values[*at] >= result.greyLevels.toothFrom) ++bright;
+            }
+    if (inTeeth == 0) return;  // which is told elsewhere, by tooth
+    const double share = static_cast<double>(bright) / static_cast<double>(inTeeth);
+    const std::string said =
+        fmt::format("only {:.0f} % of what the labels call teeth is as bright as a tooth in the scan", 100.0 * share);
+    if (share < kRefused)
+        throw core::Error(said + ": it is another scan, or shifted against them", result.job.grey.filename().string(),
+                          "give the scan that the labels were made from, or leave it out")
+            .as("grey-elsewhere");
+    if (share < kTold) result.toothNotes.push_back(said + ": are they of this scan?");
+}
+
 /// The same tooth of the other side.
 int mirrored(int fdi) {
     const int quadrant = fdi / 10;
@@ -151,6 +177,7 @@ segmentation::Region segmentMouth(ScanResult& result, const core::Progress& prog
         result.greyLevels = segmentation::findThresholds(result.grey->volume, core::part(progress, 0.0, 0.3));
         if (job.toothFrom) result.greyLevels.toothFrom = static_cast<float>(*job.toothFrom);
         if (job.enamelFrom) result.greyLevels.enamelFrom = static_cast<float>(*job.enamelFrom);
+        requireSamePlace(result);
     } else {
         result.toothNotes.emplace_back(
             own.hasPulp ? "the labels tell the pulp, but no enamel from dentine: all around the pulp counts as enamel"

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <string>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
@@ -68,8 +70,14 @@ std::string plain(std::string_view name) {
     return text;
 }
 
+/// 3D Slicer's own name for a segment that nobody named, "Segment_11", counts and tells nothing.
+bool isCounted(const std::string& text) {
+    return text.rfind("segment ", 0) == 0 && text.find_first_not_of("0123456789 ", 8) == std::string::npos;
+}
+
 /// A number of two or three figures that stands alone, or behind "fdi", "tooth", "t"; 0: there is none.
 int numberIn(const std::string& text) {
+    if (isCounted(text)) return 0;
     const auto isDigit = [&](std::size_t i) { return i < text.size() && text[i] >= '0' && text[i] <= '9'; };
     for (std::size_t i = 0; i < text.size(); ++i) {
         if (!isDigit(i) || (i > 0 && isDigit(i - 1))) continue;
@@ -123,6 +131,8 @@ LabelMeaning byName(std::string_view name, bool& isGroup) {
     if (has("sinus") || has("canal") || has("nerve") || has("pharynx") || has("airway")) {
         if (!has("root canal")) return {What::notShown, 0};
     }
+    if (has("missing") || has("absent") || has("extracted")) return {What::notShown, 0};
+    if (has("implant") || has("bridge") || has("pontic")) return {What::prosthesis, 0};
     const bool isPulp = has("pulp") || has("root canal");
     int fdi = numberIn(text);
     if (fdi > 100) fdi -= 100;
@@ -144,6 +154,25 @@ LabelMeaning byName(std::string_view name, bool& isGroup) {
     if (has("maxill") || has("upper jaw") || has("skull") || has("cranium")) return {What::upperBone, 6};
     if (has("bone")) return {What::tissue, 6};
     return {};
+}
+
+/// Numbers behind the same words, "tooth 2" to "tooth 31", of which one is none of FDI's: they are of another way to
+/// count, or nobody can tell.
+bool areOtherNumbers(const std::vector<std::string>& texts) {
+    struct Seen {
+        bool hasFdi = false, hasOther = false;
+    };
+    std::map<std::string, Seen> seen;
+    for (const std::string& text : texts) {
+        const std::size_t from = text.find_first_of("0123456789");
+        if (from == std::string::npos || isCounted(text) || text.find("fdi") != std::string::npos) continue;
+        const std::size_t end = std::min(text.find_first_not_of("0123456789", from), text.size());
+        if (end - from > 3) continue;
+        const int n = std::stoi(text.substr(from, end - from));
+        Seen& words = seen[text.substr(0, from) + '#' + text.substr(end)];
+        (isFdi(n) || isFdi(n - 100) ? words.hasFdi : words.hasOther) = true;
+    }
+    return std::any_of(seen.begin(), seen.end(), [](const auto& s) { return s.second.hasFdi && s.second.hasOther; });
 }
 
 struct Present {
@@ -200,6 +229,14 @@ std::optional<LabelNumbers> numbersOf(const Present& present) {
     return LabelNumbers::fdi;
 }
 
+core::Error ambiguous(const std::string& where) {
+    return core::Error(
+               "its labels may be FDI numbers, Universal numbers (1 to 32) or teeth that are counted "
+               "through: they do not tell which",
+               where, "say which they are: --numbers fdi, universal or consecutive")
+        .as("labels-ambiguous");
+}
+
 bool hasTeeth(const LabelKey& key, const Present& present) {
     for (int n = 1; n < 256; ++n)
         if (present.has(n) && key.of[static_cast<std::size_t>(n)].what == What::tooth) return true;
@@ -228,8 +265,14 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
     bool isByName = false;
     if (!asked) {
         int groups = 0, teeth = 0, tissues = 0;
+        std::vector<std::string> texts;
+        std::map<int, int> namesOf;
         for (const volume::LabelName& name : names) {
             if (!present.has(name.value)) continue;
+            texts.push_back(plain(name.name));
+            if (++namesOf[name.value] == 2)
+                key.notes.push_back(
+                    fmt::format("label {} has several names in the file: the last one counts", name.value));
             bool isGroup = false;
             const LabelMeaning meaning = byName(name.name, isGroup);
             key.of[static_cast<std::size_t>(name.value)] = meaning;
@@ -238,6 +281,7 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
             tissues += meaning.what == What::tissue && (meaning.number == 2 || meaning.number == 3) ? 1 : 0;
         }
         isByName = teeth > 0 || tissues > 0;
+        if (teeth > 0 && areOtherNumbers(texts)) throw ambiguous(where);
         if (groups > 0 && !isByName)
             throw core::Error("its labels tell jaws and rows of teeth, but not one tooth from the next", where,
                               "use labels of single teeth, as ToothFairy's or TotalSegmentator's task \"teeth\" has "
@@ -258,12 +302,7 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
     }
     if (!isByName) {
         const std::optional<LabelNumbers> numbers = asked ? asked : numbersOf(present);
-        if (!numbers)
-            throw core::Error(
-                "its labels may be FDI numbers, Universal numbers (1 to 32) or teeth that are counted "
-                "through: they do not tell which",
-                where, "say which they are: --numbers fdi, universal or consecutive")
-                .as("labels-ambiguous");
+        if (!numbers) throw ambiguous(where);
         byNumbers(*numbers);
         if (!asked && numbers == LabelNumbers::consecutive)
             key.notes.emplace_back(
@@ -274,6 +313,14 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
     if (!hasTeeth(key, present))
         throw core::Error("none of its labels is a tooth by these numbers", where, "say which numbers they are")
             .as("labels-empty");
+    std::map<int, std::vector<int>> labelsOf;
+    for (int n = 1; n < 256; ++n)
+        if (const LabelMeaning& m = key.of[static_cast<std::size_t>(n)]; present.has(n) && m.what == What::tooth)
+            labelsOf[m.number].push_back(n);
+    for (const auto& [fdi, numbers] : labelsOf)
+        if (numbers.size() > 1)
+            key.notes.push_back(fmt::format("the labels {} are all called tooth {}: they are taken for one tooth",
+                                            fmt::join(numbers, ", "), fdi));
     std::vector<int> unknown;
     for (int n = 1; n < 256; ++n)
         if (present.has(n) && key.of[static_cast<std::size_t>(n)].what == What::unknown) unknown.push_back(n);
@@ -284,16 +331,40 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
     return key;
 }
 
-bool looksLikeMouth(const volume::Volume& volume, const std::vector<volume::LabelName>& names) {
+namespace {
+
+/// How often each number is there, where all are whole ones, few, and most are 0: grey values have no such gaps.
+std::optional<std::array<std::size_t, 256>> fewNumbers(const volume::Volume& volume) {
     constexpr int kMostNumbers = 100;
     std::array<std::size_t, 256> counts{};
     int numbers = 0;
     for (const float v : volume.values) {
-        if (!(v >= 0.0f && v <= 255.0f && v == std::floor(v))) return false;
-        if (counts[static_cast<std::size_t>(v)]++ == 0 && ++numbers > kMostNumbers) return false;
+        if (!(v >= 0.0f && v <= 255.0f && v == std::floor(v))) return std::nullopt;
+        if (counts[static_cast<std::size_t>(v)]++ == 0 && ++numbers > kMostNumbers) return std::nullopt;
     }
-    // Most of a mouth is nothing, and grey values have no such gaps.
-    if (counts[0] < volume.values.size() / 3) return false;
+    return counts[0] < volume.values.size() / 3 ? std::nullopt : std::optional(counts);
+}
+
+}  // namespace
+
+int unsaidLabels(const volume::Volume& volume, const std::vector<volume::LabelName>& names) {
+    // Fewer may be a scan of two or three grey values, a mask for instance; numbers of teeth end at 85.
+    constexpr int kFewest = 6, kHighest = 85;
+    const auto counts = fewNumbers(volume);
+    if (!counts) return 0;
+    int numbers = 0;
+    for (int n = 1; n < 256; ++n) {
+        if ((*counts)[static_cast<std::size_t>(n)] == 0) continue;
+        if (n > kHighest) return 0;
+        ++numbers;
+    }
+    return numbers >= (names.empty() ? kFewest : 1) ? numbers : 0;
+}
+
+bool looksLikeMouth(const volume::Volume& volume, const std::vector<volume::LabelName>& names) {
+    const auto few = fewNumbers(volume);
+    if (!few) return false;
+    const std::array<std::size_t, 256>& counts = *few;
     bool isGroup = false;
     const auto isNamed = [&](int n) {
         return std::any_of(names.begin(), names.end(), [&](const volume::LabelName& name) {

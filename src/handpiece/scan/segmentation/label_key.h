@@ -42,6 +42,9 @@ struct LabelKey {
                                   std::optional<LabelNumbers> asked, const std::string& where);
 /// Whether grey values are none, but labels with teeth by their numbers or names: a scan has all numbers between.
 [[nodiscard]] bool looksLikeMouth(const volume::Volume& volume, const std::vector<volume::LabelName>& names);
+/// How many whole numbers a volume holds that can hardly be grey values: labels of which nobody said that they are
+/// some; with names of labels beside them they are never grey values. 0: they can be.
+[[nodiscard]] int unsaidLabels(const volume::Volume& volume, const std::vector<volume::LabelName>& names);
 
 /// A tooth that labels tell.
 struct LabelledTooth {

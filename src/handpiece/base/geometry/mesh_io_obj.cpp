@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "handpiece/base/geometry/mesh_io_formats.h"
+#include "handpiece/base/geometry/mesh_io_obj_texture.h"
 
 namespace handpiece::geometry::formats {
 namespace {
@@ -48,10 +49,24 @@ std::uint32_t formOf(std::string_view corner) {
     return form;
 }
 
+// Behind a vertex's coordinates, red, green and blue, some with how opaque they are. A single number there is a weight.
+void takeColour(std::string_view line, FoundColours& found) {
+    constexpr std::size_t kMost = 4;
+    std::array<double, kMost> numbers;
+    std::size_t count = 0;
+    for (std::string_view word = nextWord(line); !word.empty() && word.front() != '#'; word = nextWord(line)) {
+        if (count == kMost || !parseNumber(word, numbers[count])) return;
+        ++count;
+    }
+    if (count >= 3) found.add(numbers[0], numbers[1], numbers[2]);
+}
+
 }  // namespace
 
-TriangleMesh readObj(const Source& source) {
+TriangleMesh readObj(const Source& source, VertexColours* colours) {
     TriangleMesh mesh;
+    FoundColours found;
+    ObjTexture texture;
     BadCoordinates bad;
     const std::string_view text = source.text();
     std::string storage;
@@ -84,6 +99,7 @@ TriangleMesh readObj(const Source& source) {
             }
             if (!isCoordinate(v.x()) || !isCoordinate(v.y()) || !isCoordinate(v.z())) bad.add(mesh.vertices.size());
             mesh.vertices.push_back(v);
+            if (colours != nullptr) takeColour(line, found);
         } else if (key == "f") {
             corners.clear();
             for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
@@ -104,6 +120,7 @@ TriangleMesh readObj(const Source& source) {
                     highestLine = lineNumber;
                 }
                 corners.push_back(static_cast<std::uint32_t>(index));
+                if (colours != nullptr) texture.corner(word, corners.back(), mesh.vertices.size());
                 isAnotherForm = mesh.triangles.size() > 0 && formOf(word) != form;
                 form = formOf(word);
             }
@@ -118,14 +135,22 @@ TriangleMesh readObj(const Source& source) {
             ++lines;
         } else if (key == "curv" || key == "curv2" || key == "surf") {
             ++curved;
+        } else if (colours != nullptr) {
+            if (key == "vt") texture.place(line);
+            if (key == "usemtl") texture.material(line);
+            if (key == "mtllib") texture.library(line);
         }
-        // Everything else (normals, texture, groups, materials, comments) says nothing about the surface.
+        // Everything else (normals, groups, comments) says nothing about the surface.
     }
     if (highest > mesh.vertices.size())
         source.fail(
             fmt::format("the face in line {} names vertex {} of {}", highestLine, highest, mesh.vertices.size()),
             "export the mesh again");
     bad.check(source, "vertices", "vertex");
+    if (colours != nullptr) {
+        *colours = found.settle(source, mesh.vertices.size(), 1.0);
+        if (colours->empty()) *colours = texture.colours(source, mesh.vertices.size());
+    }
     settle(polygons, mesh, source);
     if (lines > 0)
         source.note(fmt::format("{} of points or lines {} left out: they are no surface",

@@ -74,7 +74,6 @@ struct BadCoordinates {
 /// Colours as a file has them, by vertex: numbers on a scale that only all of them together tell.
 class FoundColours {
   public:
-    void reserve(std::size_t vertices) { found_.reserve(vertices); }
     void add(double red, double green, double blue) {
         found_.push_back({static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)});
     }

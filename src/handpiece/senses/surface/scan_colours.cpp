@@ -16,7 +16,7 @@ bool isSound(cases::Tissue tissue) {
 
 double nearScanMm(const tooth::ToothModel& model, int level) {
     constexpr double kLeastMm = 0.02, kOfACell = 0.5;
-    return std::max(kLeastMm, kOfACell * model.field.settings().voxelMm) * (1.0 + 0.5 * level);
+    return std::max(kLeastMm, kOfACell * model.field.settings().voxelMm) * (1.0 + level);
 }
 
 std::shared_ptr<const std::vector<ScanColour>> scanColours(const tooth::ToothModel& model, const BrickMesh* mesh) {

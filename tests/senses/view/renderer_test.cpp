@@ -587,6 +587,29 @@ TEST(Renderer, OnlyAnAdjacentToothInTheWayEndsWhatSurroundsATooth) {
     EXPECT_TRUE(isRed(at(picture(renderer, fromMesial(), look, withoutBur()), fromMesial(), {4.0, 0.0, 0.0})));
 }
 
+TEST(Renderer, FromOcclusalTheOtherJawIsLeftOutWhereTheJawsAreClosed) {
+    Renderer renderer;
+    renderer.setMesh(test::boxMesh({-4, -4, -8}, {4, 4, 2}), Tissue::enamel);
+    std::vector<cases::Part> closed = mouthAround();
+    for (const double x : {0.0, 9.0})  // antagonists, of which one is in the way, and what they stand in
+        closed.push_back({"antagonist", Tissue::neighbour, 0, test::boxMesh({x - 4, -4, 1.5}, {x + 4, 4, 12})});
+    closed.push_back({"upper gingiva", Tissue::gum, 0, test::boxMesh({-20, -6, 9}, {20, 6, 20})});
+    renderer.setScenery(closed);
+    const Look look = plainLook();
+    Camera over = above(), buccal = fromMesial();
+    over.eyeMm = {0.0, -3.0, 60.0};
+    buccal.eyeMm = {0.0, -40.0, 4.0};
+    const Image image = picture(renderer, over, look, withoutBur());
+    EXPECT_FALSE(isRed(at(image, over, {1.0, 1.0, 2.0})));
+    EXPECT_GT(brightness(at(image, over, {1.0, 1.0, 2.0})), 250);
+    // Its own jaw is there, as without the other one.
+    renderer.setScenery(mouthAround());
+    expectSame(picture(renderer, over, look, withoutBur()), image);
+    // From buccal both jaws are seen.
+    renderer.setScenery(closed);
+    EXPECT_TRUE(isRed(at(picture(renderer, buccal, look, withoutBur()), buccal, {0.0, -6.0, 12.0})));
+}
+
 TEST(Renderer, AnAdjacentToothThatWasCutIsLeftOutToo) {
     Renderer renderer;
     renderer.setTooth({{-4, -4, -8}, {4, 4, 2}});

@@ -16,7 +16,7 @@ namespace {
 constexpr std::size_t kMaxChanges = 20000;
 constexpr double kCreaseRad = 0.9, kPieceTriangles = 200.0;
 constexpr double kCrownCentreMm = 3.0, kCrownMm = 7.0;  // under a crown's top: a first molar's is 7.5 mm high [R]
-constexpr double kBeforeProximalMm = 0.05;
+constexpr double kBeforeProximalMm = 0.05, kOverOcclusalMm = 4.0;
 constexpr float kPatchMm = 2.0f;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
@@ -284,9 +284,13 @@ Scene::InTheWay Scene::inTheWay(const std::optional<gl::Vec3f>& eyeMm) const {
     const double top = toothBounds_.max.z(), side = eye.x() < middle.x() ? -1.0 : 1.0;
     const core::Vec3 to(middle.x(), middle.y(), top - std::min(kCrownCentreMm, 0.5 * toothBounds_.size().z()));
     bool isBeside = false;  // one of the same jaw, on the eye's side
+    bool isOver = false;    // one of the other jaw, over this tooth
+    std::vector<std::uint16_t> otherJaw;
     const auto ask = [&](std::uint16_t number, const core::Box& box) {
+        if (box.centre().z() > top) otherJaw.push_back(number);
         if (!leadsThrough(box, eye, to)) return;
         out.teeth.insert(number);
+        isOver = isOver || box.centre().z() > top;
         isBeside = isBeside || (box.centre().z() < top && side * (box.centre().x() - middle.x()) > 0.0);
     };
     // Teeth as wholes, those in bricks as they were before they were cut.
@@ -308,6 +312,12 @@ Scene::InTheWay Scene::inTheWay(const std::optional<gl::Vec3f>& eyeMm) const {
             if (const std::uint16_t tooth = tooth::toothOf(brick.id); tooth > 0) extend(boxes[tooth], brick);
     for (const auto& [number, box] : boxes)
         if (!box.isEmpty()) ask(number, box);
+    if (isOver && eye.z() > top) {
+        // Jaws that are closed, or nearly: the other one goes whole, with its gingiva and bone.
+        out.teeth.insert(otherJaw.begin(), otherJaw.end());
+        out.plane = Plane{core::Vec3::UnitZ(), top + kOverOcclusalMm};
+        return out;
+    }
     if (!isBeside) return out;
 
     core::Box crown;

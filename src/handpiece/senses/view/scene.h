@@ -59,7 +59,7 @@ class Scene {
 
     /// Other teeth that would stand between an eye and the tooth's crown are left out, by their numbers: a look from
     /// mesial or distal shows this tooth. Where adjacent teeth are, what surrounds the tooth ends at a plane before its
-    /// proximal side, or their empty sockets would hide it.
+    /// proximal side, or their empty sockets would hide it; of jaws that are closed the other one is left out whole.
     struct InTheWay {
         std::set<std::uint16_t> teeth;
         std::optional<Plane> plane;

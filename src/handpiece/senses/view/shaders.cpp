@@ -249,7 +249,7 @@ uniform vec4 material[32];  // wrap, gloss, sharpness of it, how far light goes 
 uniform float wet;
 uniform int natural;
 uniform vec2 crown;         // where it begins and ends along z
-uniform int hasDentine;     // how far it lies is known
+uniform int hasDentine;     // 1: how far it lies is known; 2: there is none
 uniform sampler2D dentineTiles;
 uniform vec3 dentineLow, perDentine;
 uniform int removedColours;
@@ -340,10 +340,15 @@ void main() {
     if (kind == 29) n = dot(n, v) < 0.0 ? -n : n;
     float nv = clamp(dot(n, v), 0.0, 1.0);
 
+    float eyeDepth = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+    vec3 across = (toTooth[0].xyz - at * toTooth[0].w) / h.w, upwards = (toTooth[1].xyz - at * toTooth[1].w) / h.w;
+    float pixelMm = 2.0 * length(across) / float(textureSize(surface, 0).x);
+    across = normalize(across);
+    upwards = normalize(upwards);
     float open = 1.0, lit = 1.0;
     {
         // From half resolution, without mixing near and far.
-        float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+        float z = eyeDepth;
         vec2 q = 0.5 * gl_FragCoord.xy - 0.25;
         ivec2 low = max(ivec2(floor(q)), ivec2(0)), last = textureSize(occlusion, 0) - 1;
         vec2 f = fract(q);
@@ -369,7 +374,7 @@ void main() {
             // is greyer and bluer. Where no dentine is known, by the height in the crown.
             float up = kind == 8 ? min(1.0, (code - 16384.0) / 2000.0)
                                  : clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
-            float mm = kind == 1 && hasDentine != 0 ? overDentine(at)
+            float mm = kind == 1 && hasDentine == 2 ? 2.55 : kind == 1 && hasDentine == 1 ? overDentine(at)
                                                     : 0.12 + 0.95 * smoothstep(0.0, 0.55, up) + 0.5 * smoothstep(0.75, 1.0, up);
             albedo *= mix(vec3(1.0), vec3(0.93, 0.77, 0.53), exp2(-2.4 * mm));
             float clear = smoothstep(1.1, 2.0, mm) * (0.30 + 0.70 * (1.0 - nv));
@@ -447,13 +452,19 @@ void main() {
     float sharp = m.z * mix(0.35, 1.0, wet);
     // Where the surface turns within a pixel a spark is as wide as the turn, and so much the fainter (after Tokuyoshi &
     // Kaplanyan 2019): the floor of a fissure is no row of dots.
-    float turn = 0.0;
+    float turn = 0.0, edge = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 o = (i & 2) * ivec2(i & 1, 1 - (i & 1)) - ivec2(i & 1, 1 - (i & 1));
-        vec3 beside = texelFetch(surface, clamp(p + o, ivec2(0), textureSize(surface, 0) - 1), 0).xyz * 2.0 - 1.0;
+        ivec2 q = clamp(p + o, ivec2(0), textureSize(surface, 0) - 1);
+        vec3 beside = texelFetch(surface, q, 0).xyz * 2.0 - 1.0;
         float isThere = abs(dot(beside, beside) - 1.0) < 0.5 ? 0.25 : 0.0;  // no background, no section's face
         turn += isThere * dot(beside - n, beside - n);
+        float away = depthTerms.y / (2.0 * texelFetch(depth, q, 0).r - 1.0 + depthTerms.x) - eyeDepth;
+        if (abs(away) < 10.0 * pixelMm) edge += 2.0 * isThere * dot(beside - n, float(o.x) * across + float(o.y) * upwards);
     }
+    // Two faces that the lamp lights alike differ by the edge between them: outward it catches the light, inward it is
+    // a line that no light reaches.
+    sum3 *= 1.0 + 0.15 * smoothstep(0.12, 0.5, edge) - 0.4 * open * smoothstep(0.12, 0.5, -edge);
     vec2 lobe = sharp * vec2(14.0, 110.0), width = 1.0 / (1.0 + turn * lobe);
     lobe *= width;
     float spark = width.x * exp(lobe.x * (nh - 1.0)) * 0.16 + wet * width.y * exp(lobe.y * (nh - 1.0)) * 0.95;

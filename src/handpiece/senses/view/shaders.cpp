@@ -15,6 +15,7 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in uint tissue;
 layout(location = 3) in float removed;
+layout(location = 4) in float blood;
 uniform mat4 viewProjection;
 uniform int visibleTissues;
 #ifdef CLIPPED
@@ -23,7 +24,7 @@ uniform vec4 endPlane;  // of a mirror, or before a proximal side
 out float gl_ClipDistance[2];
 #endif
 out vec3 normalOut;
-out float removedOut;
+out vec2 removedOut;  // and blood
 flat out float kind;
 void main() {
     vec4 at = vec4(position, 1.0);
@@ -35,14 +36,14 @@ void main() {
     gl_ClipDistance[1] = dot(endPlane, at);
 #endif
     normalOut = 0.5 * normal.xyz + 0.5;
-    removedOut = removed;
+    removedOut = vec2(removed, blood);
     kind = float(tissue);
 }
 )";
 
 constexpr const char* kSurfaceFragment = R"(
 in vec3 normalOut;
-in float removedOut;
+in vec2 removedOut;
 flat in float kind;
 layout(location = 0) out vec4 surface;
 void main() {
@@ -57,7 +58,11 @@ void main() {
         k = 29.0;
     }
 #endif
-    float depth = min(2047.0, floor(removedOut * 6553.5));
+    float depth = min(2047.0, floor(removedOut.x * 6553.5));
+    if (k == 6.0 && removedOut.y > 0.004) {
+        k = 27.0;
+        depth = 64.0 * min(31.0, floor(depth / 33.0)) + floor(63.0 * min(1.0, removedOut.y));
+    }
     surface = vec4(normalOut, (k * 2048.0 + depth) / 65535.0);
 }
 )";
@@ -254,8 +259,6 @@ uniform sampler2D dentineTiles;
 uniform vec3 dentineLow, perDentine;
 uniform int removedColours;
 uniform float removedMost;
-uniform int bleedings;
-uniform vec3 bleeding[24];
 #ifdef SHADOWS
 uniform sampler2DShadow shadowMap;
 uniform mat4 toShadow;
@@ -322,9 +325,14 @@ void main() {
     float code = floor(g.w * 65535.0 + 0.5);
     int kind = int(code / 2048.0);
     vec3 n = g.xyz * 2.0 - 1.0;
+    float low = code - float(kind) * 2048.0, blood = 0.0;
+    if (kind == 27) {
+        blood = mod(low, 64.0) / 63.0;
+        low = 33.0 * floor(low / 64.0);
+        kind = 6;
+    }
     vec3 albedo = palette[kind];
     if (dot(n, n) < 0.1) {  // a section's face: as a drawing
-        float low = code - float(kind) * 2048.0;
         vec3 face = albedo * (low == 1.0 ? 0.55 : 0.92);
         if (low >= 1024.0) {
             face = mix(face, palette[30] * 0.92, mod(low, 32.0) / 31.0);
@@ -400,18 +408,17 @@ void main() {
 #endif
         if (kind == 6) {
             albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
-            gum((code - float(kind) * 2048.0) * 0.01, at, albedo, n, m);
+            gum(low * 0.01, at, albedo, n, m);
         }
     }
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
-        albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
+        albedo = texture(depthScale, vec2(low * 0.01 / removedMost, 0.5)).rgb;
 
-    if (kind == 6 && bleedings > 0) {
-        float nearest = 1e6;
-        for (int i = 0; i < bleedings; ++i) nearest = min(nearest, distance(at, bleeding[i]));
-        float dry = smoothstep(0.9, 1.5, nearest);
-        albedo = mix(vec3(0.26, 0.004, 0.006), albedo, dry);
-        m.yw *= mix(0.2, 1.0, dry);
+    if (blood > 0.0) {
+        // A film lets what is under it through, red; thick it is nearly black, and always wet.
+        float over = smoothstep(0.0, 0.10, blood);
+        albedo = mix(albedo, mix(vec3(0.30, 0.006, 0.008), vec3(0.085, 0.002, 0.003), smoothstep(0.1, 0.8, blood)), over);
+        m = mix(m, vec4(0.12, 0.75, 1.7, 0.15), over);
     }
 
     // Light goes into tissue and comes out beside: red farther than blue.

@@ -178,6 +178,7 @@ Asked read(const PictureOptions& o) {
 struct Subject {
     core::Box bounds;
     view::Standing standing;
+    Vec3 down = -Vec3::UnitZ();                   ///< as gravity acts on the patient
     std::shared_ptr<simulation::LiveTooth> live;  ///< null: a mesh alone
     geometry::ColouredMesh mesh;                  ///< that one
     std::vector<cases::Part> scenery, parts;
@@ -192,6 +193,7 @@ void takeCase(Subject& subject, const cases::Case& toothCase, int hour) {
     subject.standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
+    subject.down = input::downInCase(toothCase);
     subject.bounds = subject.live->model().outer.bounds();
     if (hour == 0) return;
     const std::optional<core::Quat> head = input::headInCase(toothCase);
@@ -376,6 +378,7 @@ void picture(const PictureOptions& o) {
         renderer.updateBricks(subject.live->takeNews());
         renderer.setParts(subject.parts);
         if (!o.noScenery) renderer.setScenery(subject.scenery);
+        renderer.setGingivaCuts(subject.live->gingiva().all(), subject.down);
     } else {
         renderer.setMesh(subject.mesh.mesh, cases::Tissue::enamel, subject.mesh.colours);
     }

@@ -19,7 +19,6 @@ constexpr auto kFramePeriod = std::chrono::microseconds(16667);
 // after an undo, are looked for this often.
 constexpr auto kPoll = std::chrono::milliseconds(15);
 constexpr double kDebrisS = 1.5;                        // particles fly on for about this long
-constexpr double kBleedsApartMm = 0.5;                  // nearer it is the same place
 constexpr double kHeadHides = 0.82, kHeadClear = 0.78;  // cosines of bur's axis and line of sight, either way round
 constexpr double kMaxSoftwarePixels = 1.6e6;            // more would be seen later than they are seen sharper
 
@@ -100,14 +99,14 @@ struct RenderThread::Shared {
     std::shared_ptr<simulation::SampleFeed> feed;
     std::shared_ptr<const std::vector<cases::Part>> parts, scenery;
     std::shared_ptr<const instrument::Bur> bur;
+    core::Vec3 down = -core::Vec3::UnitZ();
     std::shared_ptr<const geometry::TriangleMesh> turbine;
     std::optional<view::SectionFace> face;
     std::optional<std::vector<view::GlassSurface>> glass;
     std::optional<messages::HapticSample> given;  ///< by setSample()
-    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false, stanched = false;
+    bool newTooth = false, newBur = false, newTurbine = false, newFace = false, newRequest = false;
 
     messages::HapticSample sample;  ///< the newest seen
-    bool bleeding = false;          ///< the tooth that is shown now
     std::optional<Frame> ready;
     QString description;
 
@@ -138,7 +137,9 @@ struct RenderThread::Worker {
     RenderRequest renderRequest;
     std::optional<view::Plane> cutPlane;
     messages::HapticSample sample, drawn;
-    std::vector<core::Vec3> bleedingMm;
+    core::Vec3 down = -core::Vec3::UnitZ();
+    std::uint64_t cutsVersion = 0;
+    bool isFlowing = false;  ///< blood
     Clock::time_point seen{};
     bool headInTheWay = false, missing = false, dirty = true, beforeDirty = true, wantsDepths = false;
     double removalMm3S = 0.0;
@@ -176,19 +177,16 @@ struct RenderThread::Worker {
         headInTheWay = towardsEye > (headInTheWay ? kHeadClear : kHeadHides);
     }
 
-    void bleed(const messages::HapticSample& earlier) {
-        if (sample.timeS < earlier.timeS) bleedingMm.clear();  // a replay that goes back
-        if ((sample.flags & messages::kCutsGingiva) == 0 || bleedingMm.size() >= view::kMostBleeding) return;
-        const core::Vec3 tip = proxyPose(sample).positionMm;
-        for (const core::Vec3& place : bleedingMm)
-            if ((place - tip).norm() < kBleedsApartMm) return;
-        bleedingMm.push_back(tip);
+    /// What the gingiva has suffered since.
+    void bleed() {
+        if (!tooth || tooth->gingiva().version() == cutsVersion) return;
+        cutsVersion = tooth->gingiva().version();
+        renderer->setGingivaCuts(tooth->gingiva().all(), down);
         dirty = true;
     }
 
     [[nodiscard]] view::Look lookNow() const {
         view::Look look = renderRequest.look;
-        look.bleedingMm = bleedingMm;
         look.scaleBar = false;  // the window writes its own, with its label
         if (cutPlane) look.cutAway = cutPlane;
         if (headInTheWay) look.turbine = false;
@@ -250,7 +248,6 @@ Frame RenderThread::Worker::draw() {
     if (beforeDirty) {
         view::Look look = lookNow();
         look.bur = look.turbine = look.removedDepthColours = false;
-        look.bleedingMm.clear();
         look.tooth = view::ToothShown::now;
         look.cutAway.reset();
         view::Moment still;
@@ -353,12 +350,8 @@ void RenderThread::run() {
                 worker.scenery = shared_->scenery;
                 worker.sample = shared_->sample;
                 worker.wantsDepths = false;
-                worker.bleedingMm.clear();
+                worker.down = shared_->down;
                 newTooth = true;
-            }
-            if (std::exchange(shared_->stanched, false) && !worker.bleedingMm.empty()) {
-                worker.bleedingMm.clear();
-                worker.dirty = true;
             }
             newBur = std::exchange(shared_->newBur, false);
             worker.bur = shared_->bur;
@@ -377,11 +370,9 @@ void RenderThread::run() {
                 worker.seen = Clock::now();
                 shared_->sample = worker.sample;
                 const double dt = worker.sample.timeS - earlier.timeS;
-                worker.bleed(earlier);
                 worker.removalMm3S =
                     dt > 0.0 ? std::max(0.0, removedMm3(worker.sample) - removedMm3(earlier)) / dt : 0.0;
             }
-            shared_->bleeding = !worker.bleedingMm.empty();
         }
         const auto now = Clock::now();
         if (worker.feed && fresh) {
@@ -391,7 +382,7 @@ void RenderThread::run() {
         if (worker.removalMm3S > 0.0 || turns(worker.sample))
             worker.animateUntil = now + std::chrono::milliseconds(static_cast<int>(kDebrisS * 1000));
         if (moved(worker.sample, worker.drawn) ||
-            (now < worker.animateUntil && worker.sample.timeS != worker.drawn.timeS))
+            ((now < worker.animateUntil || worker.isFlowing) && worker.sample.timeS != worker.drawn.timeS))
             worker.dirty = true;
         try {
             if (worker.tooth && worker.wantsDepths != worker.renderRequest.look.removedDepthColours) {
@@ -410,9 +401,12 @@ void RenderThread::run() {
                 worker.before.reset();
                 worker.cutPlane.reset();
                 worker.setTooth(*worker.renderer, true);
+                worker.renderer->setGingivaCuts({}, worker.down);
+                worker.cutsVersion = 0;
             } else if (news) {
                 worker.renderer->updateBricks(worker.tooth->takeNews());
             }
+            worker.bleed();
             if (news || newTooth) callbacks_.toothChanged();
             if (newBur && worker.bur)
                 worker.renderer->setBur(worker.bur->mesh(), worker.bur->lengthMm(), worker.bur->maxRadiusMm(),
@@ -431,6 +425,7 @@ void RenderThread::run() {
             frame.begun = now;
             frame.drawn = Clock::now();
             worker.drawn = worker.sample;
+            worker.isFlowing = frame.report.bleeding;
             worker.dirty = frame.report.refining || frame.report.preparing;
             {
                 const std::lock_guard lock(shared_->mutex);
@@ -459,7 +454,8 @@ void tell(Shared& shared, F&& change) {
 }  // namespace
 
 void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
-                            std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed) {
+                            std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed,
+                            const core::Vec3& down) {
     auto keptParts = std::make_shared<const std::vector<cases::Part>>(std::move(parts));
     auto keptScenery = std::make_shared<const std::vector<cases::Part>>(std::move(scenery));
     listenTo(feed);
@@ -468,6 +464,7 @@ void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::v
         s.parts = std::move(keptParts);
         s.scenery = std::move(keptScenery);
         s.feed = std::move(feed);
+        s.down = down;
         s.given.reset();
         s.face.reset();
         s.glass.reset();
@@ -502,15 +499,6 @@ void RenderThread::setSample(const messages::HapticSample& sample) {
 
 void RenderThread::setGlass(std::vector<view::GlassSurface> surfaces) {
     tell(*shared_, [&](Shared& s) { s.glass = std::move(surfaces); });
-}
-
-void RenderThread::clearBlood() {
-    tell(*shared_, [](Shared& s) { s.stanched = true; });
-}
-
-bool RenderThread::isBleeding() const {
-    const std::lock_guard lock(shared_->mutex);
-    return shared_->bleeding;
 }
 
 void RenderThread::setRequest(const RenderRequest& renderRequest) {

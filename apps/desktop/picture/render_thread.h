@@ -61,17 +61,16 @@ class RenderThread {
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
-    /// Null: an empty scene. `parts`: the tooth's tissues, `scenery`: what stands around it.
+    /// Null: an empty scene. `parts`: the tooth's tissues, `scenery`: what stands around it; `down`: as
+    /// gravity acts on the patient.
     void setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
-                  std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed);
+                  std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed,
+                  const core::Vec3& down = -core::Vec3::UnitZ());
     void setBur(std::shared_ptr<const instrument::Bur> bur);
     void setTurbine(geometry::TriangleMesh mesh);
     void setSample(const messages::HapticSample& sample);
     /// Over the tooth until another one.
     void setGlass(std::vector<view::GlassSurface> surfaces);
-    /// Gingiva that was cut bleeds in the picture until then.
-    void clearBlood();
-    [[nodiscard]] bool isBleeding() const;
     void setRequest(const RenderRequest& renderRequest);
     /// The section that is shown; its plane is the cut-away's. Any thread.
     void setSectionFace(std::optional<view::SectionFace> face);

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "desktop/picture/view_state.h"
+#include "handpiece/app/input/working_position.h"
 #include "handpiece/base/core/error.h"
 
 namespace handpiece::desktop {
@@ -57,7 +58,8 @@ void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, cons
     s.tooth = std::move(liveTooth);
     s.take(toothCase, s.tooth->model().outer.bounds());
     s.tissues = tissuesOf(toothCase);
-    s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed));
+    s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed),
+                       input::downInCase(toothCase));
     s.probe->setTooth(s.tooth);
     showStandardView(view::StandardView::oblique);
     s.firstEye = s.camera;
@@ -173,10 +175,10 @@ void ViewWidget::setGlass(std::vector<view::GlassSurface> surfaces) {
     state_->render->setGlass(std::move(surfaces));
 }
 void ViewWidget::clearBlood() {
-    state_->render->clearBlood();
+    if (state_->tooth) state_->tooth->gingiva().clear();
 }
 bool ViewWidget::isBleeding() const {
-    return state_->render->isBleeding();
+    return state_->tooth && !state_->tooth->gingiva().isEmpty();
 }
 messages::HapticSample ViewWidget::sample() const {
     return state_->render->sample();

@@ -152,6 +152,24 @@ TEST(WorkingPosition, WhatIsSeenDirectlyFacesTheEye) {
     EXPECT_THROW((void)usualPosition(0, Surface::occlusal, false), core::Error);
 }
 
+TEST(WorkingPosition, ThingsFallTowardsTheBackOfTheHead) {
+    // Of a lower molar that is distal and, the head tilted forward, towards its roots; of an upper one distal, and
+    // towards its crown.
+    const Vec3 lower = downInCase(alone(46)), upper = downInCase(alone(16));
+    EXPECT_NEAR(lower.norm(), 1.0, 1e-12);
+    EXPECT_LT(lower.x(), -0.6);
+    EXPECT_LT(upper.x(), -0.6);
+    // The same for left and right.
+    const Vec3 left = downInCase(alone(36));
+    EXPECT_NEAR(left.x(), lower.x(), 1e-9);
+    EXPECT_NEAR(left.y(), -lower.y(), 1e-9);
+    EXPECT_NEAR(left.z(), lower.z(), 1e-9);
+    EXPECT_EQ(downInCase(cases::Case{}), Vec3(-Vec3::UnitZ())) << "nobody knows";
+    // From every seat one looks down.
+    for (const int hour : kRightHandedHours)
+        EXPECT_GT(workingPosition(*headInCase(alone(46)), false, hour).toEye.dot(-lower), 0.8);
+}
+
 TEST(WorkingPosition, TheHandleGoesToTheHandAndTheBurStaysUpright) {
     std::mt19937 random(11);
     std::normal_distribution<double> any;

@@ -7,6 +7,7 @@
 
 #include "app/simulation/live_session_fixture.h"
 #include "handpiece/app/simulation/live_session.h"
+#include "handpiece/app/simulation/recorded_gingiva.h"
 #include "handpiece/app/simulation/session_player.h"
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/app/simulation/tissue_export.h"
@@ -307,6 +308,56 @@ TEST(Mouth, GingivaYieldsPushesBackAndIsTornByTheBur) {
     EXPECT_NEAR(still.proxyPositionMm[2], -1.4, 1e-6) << "it holds nothing off";
     EXPECT_TRUE((last.flags & messages::kCutsGingiva) != 0);
     EXPECT_EQ(removedOf(last), 0.0);
+}
+
+TEST(Mouth, WhereGingivaWasCutIsTheSameInAReplayAndWholeAfterAReset) {
+    const test::TemporaryFolder folder;
+    cases::Case made = mouth();
+    made.scenery = {{"gingiva", cases::Tissue::gum, 0, test::boxMesh(Vec3(-6, -8, -6), Vec3(6, -3, -1)), true}};
+    // Along in the gingiva, then into the tooth, so that there is something to be made whole.
+    std::vector<device::TimedPose> path{
+        at(0.0, -2, -5.5, 0.5, 1), at(0.3, -2, -5.5, -1.4, 1), at(0.9, 0, -5.5, -1.3, 1),
+        at(1.0, 0, -5.5, 0.5, 1),  at(1.3, 0, 0, 0.5, 1),      at(1.6, 0, 0, -0.1, 1),
+        at(1.8, 0, 0, 0.5, 1),     at(1.801, 0, 0, 0.5, 0),    at(3.0, 0, 0, 0.6, 0)};
+    const SimulationSetup station = setupOf(made, true);
+    LiveSessionSettings settings;
+    settings.sessionFile = folder.path() / "session.h5";
+    const auto lead = std::make_shared<Lead>();
+    const auto live = std::make_shared<LiveTooth>(station, tooth::StateDelta{});
+    LiveSession session(station, made, handOf(device::Motion(std::move(path)), lead), settings, live);
+    const auto feed = session.subscribe();
+    ASSERT_TRUE(leadTo(session, *lead, 2.2));
+    const std::vector<messages::GingivaCut> cuts = live->gingiva().all();
+    // Two millimetres along it, in steps of a fifth.
+    ASSERT_GE(cuts.size(), 10u);
+    ASSERT_LE(cuts.size(), 20u);
+    EXPECT_NEAR(cuts.back().tipMm[0] - cuts.front().tipMm[0], 2.0, 0.3);
+    EXPECT_EQ(cuts.front().stationRadiusMm.front(), 0.5) << "a flat end";
+    session.undo();
+    ASSERT_TRUE(waitUntilTaken(*feed, 1));
+    EXPECT_EQ(live->gingiva().all(), cuts) << "no step back heals it";
+    session.redo();
+    ASSERT_TRUE(waitUntilTaken(*feed, 2));
+    session.reset();
+    ASSERT_TRUE(waitUntilTaken(*feed, 3));
+    EXPECT_TRUE(live->gingiva().isEmpty());
+    session.stop();
+
+    SessionPlayer player(settings.sessionFile, false);
+    player.seek(2.1);
+    EXPECT_EQ(player.tooth()->gingiva().all(), cuts);
+    player.seek(0.6);
+    const std::size_t some = player.tooth()->gingiva().all().size();
+    EXPECT_GT(some, 2u);
+    EXPECT_LT(some, cuts.size());
+    player.seek(player.durationS());
+    EXPECT_TRUE(player.tooth()->gingiva().isEmpty());
+    // What is jumped over is read, and stands nearly where it was.
+    GingivaCuts recorded;
+    hearRecorded(recorded, player.reader(), player.events(), station.settings, 2100, "session");
+    EXPECT_NEAR(static_cast<double>(recorded.all().size()), static_cast<double>(cuts.size()), 1.0);
+    hearRecorded(recorded, player.reader(), player.events(), station.settings, 1u << 30, "session");
+    EXPECT_TRUE(recorded.isEmpty());
 }
 
 TEST(Mouth, BoneUnderTheGingivaHoldsTheBurOffAndIsNoTooth) {

@@ -474,33 +474,6 @@ TEST(Renderer, BeforeAndGhostShowWhatWasCutAway) {
     EXPECT_LT(brightness(at(ghost, camera, hole)), brightness(at(uncut, camera, hole)) - 20);
 }
 
-TEST(Renderer, GingivaBleedsWhereItIsCutAndNothingElseDoes) {
-    Renderer renderer;
-    renderer.setTooth(box(1, -1, 1));
-    renderer.setScenery(
-        std::vector<cases::Part>{{"gingiva", Tissue::gum, 0, test::boxMesh({-6, -4, -2}, {0, 4, 0})},
-                                 {"other", Tissue::neighbour, 0, test::boxMesh({0, -4, -2}, {6, 4, 0})}});
-    Look look = plainLook();
-    Image before, after;
-    renderer.draw(above(), kSize, look, {}, before);
-    look.bleedingMm = {Vec3(-2.0, 1.0, -0.3), Vec3(2.0, 1.0, -0.3)};  // in it, as a bur's tip is
-    renderer.draw(above(), kSize, look, {}, after);
-    const Vec3 cut(-2.0, 1.0, 0.0), beside(-5.0, -2.0, 0.0), tooth(2.0, 1.0, 0.0);
-    // Blood takes green and blue away, and most of the light.
-    const Rgb dry = at(before, above(), cut), wet = at(after, above(), cut);
-    std::printf("[ gingiva ] %d %d %d, bleeding %d %d %d\n", dry.r, dry.g, dry.b, wet.r, wet.g, wet.b);
-    EXPECT_LT(wet.g + wet.b, 0.7 * (dry.g + dry.b));
-    EXPECT_GT(wet.r, wet.g + 30);
-    for (const Vec3& p : {beside, tooth})
-        EXPECT_EQ(brightness(at(after, above(), p)), brightness(at(before, above(), p)));
-    // More places than can be drawn are no error, and it is dry again without any.
-    look.bleedingMm.resize(3 * kMostBleeding, Vec3(-2.0, 1.0, 0.0));
-    renderer.draw(above(), kSize, look, {}, after);
-    look.bleedingMm.clear();
-    renderer.draw(above(), kSize, look, {}, after);
-    EXPECT_EQ(after.rgba, before.rgba);
-}
-
 TEST(Renderer, LipsAndCheeksAreHeldAsideUnlessAskedFor) {
     Renderer renderer;
     renderer.setTooth(box(4, -1, 1));

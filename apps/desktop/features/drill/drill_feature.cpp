@@ -327,7 +327,6 @@ void DrillFeature::keepSettings() {
 
 void DrillFeature::takeBack() {
     simulator_.undo();
-    view_.clearBlood();  // the stroke goes back with what it did to the gingiva
     tellStep(WelcomeStrip::Step::undo);
 }
 

@@ -63,6 +63,14 @@ Quat toothInMouth(int fdi) {
     return isUpperTooth(fdi) ? Quat(axes) : core::rotationAbout(Vec3::UnitX(), kOpenedRad) * Quat(axes);
 }
 
+double tiltRad(bool isUpper) {
+    return isUpper ? kBackForUpperRad : -kForwardForLowerRad;
+}
+/// The patient lies on the back: out of the face, in the mouth frame, turned by the head's tilt.
+Vec3 offFloor(double tilt) {
+    return {0.0, -core::cos(tilt), -core::sin(tilt)};
+}
+
 /// The usual places of a right-handed operator; [R], after the habits of operative dentistry's textbooks. The head is
 /// not turned to the side here: what one sees where it is turned needs the mirror.
 UsualPosition rightHanded(int fdi, Surface surface) {
@@ -107,6 +115,13 @@ std::optional<Quat> headInCase(const cases::Case& toothCase) {
     return std::nullopt;
 }
 
+Vec3 downInCase(const cases::Case& toothCase) {
+    const std::optional<Quat> head = headInCase(toothCase);
+    if (!head) return -Vec3::UnitZ();
+    const int fdi = toothCase.fdiNumber;
+    return *head * -offFloor(tiltRad(!cases::isPermanentTooth(fdi) || isUpperTooth(fdi)));
+}
+
 void requireOperatorsHour(int hour, const std::string& where) {
     if (!isOperatorsHour(hour))
         throw core::Error(fmt::format("nobody works from {} o'clock", hour), where,
@@ -115,14 +130,13 @@ void requireOperatorsHour(int hour, const std::string& where) {
 
 WorkingPosition workingPosition(const Quat& headInCase, bool isUpper, int hour) {
     requireOperatorsHour(hour);
-    // The patient lies on the back: away from the floor is out of the face, and 12 where the top of the head points,
-    // both turned by the head's tilt.
-    const double tilt = isUpper ? kBackForUpperRad : -kForwardForLowerRad;
-    const Vec3 offFloor(0.0, -core::cos(tilt), -core::sin(tilt)), twelve(0.0, -core::sin(tilt), core::cos(tilt));
+    // 12 is where the top of the head points, turned by its tilt.
+    const double tilt = tiltRad(isUpper);
+    const Vec3 twelve(0.0, -core::sin(tilt), core::cos(tilt));
     const double around = hour * 30.0 * kRadPerDegree;
     const Vec3 towards = core::sin(around) * Vec3::UnitX() + core::cos(around) * twelve;
     WorkingPosition position;
-    position.toEye = headInCase * (core::cos(kLooksDownRad) * towards + core::sin(kLooksDownRad) * offFloor);
+    position.toEye = headInCase * (core::cos(kLooksDownRad) * towards + core::sin(kLooksDownRad) * offFloor(tilt));
     position.up = headInCase * -towards;
     position.toHand = headInCase * (kTowardsOperator * towards - Vec3::UnitY()).normalized();
     return position;

@@ -32,6 +32,10 @@ void requireOperatorsHour(int hour, const std::string& where = "position");
 /// those of the lower one, taken as opened by 40 mm; nothing where no tooth has a number.
 [[nodiscard]] std::optional<core::Quat> headInCase(const cases::Case& toothCase);
 
+/// Where things fall, with the patient on the back and the head tilted for the arch of the case's own tooth: a unit
+/// direction in the frame of the case. -z where it is not known how the head lies.
+[[nodiscard]] core::Vec3 downInCase(const cases::Case& toothCase);
+
 /// Unit directions in the frame of the case.
 struct WorkingPosition {
     core::Vec3 toEye;   ///< from the tooth

@@ -120,6 +120,7 @@ struct LiveSession::State {
                station.settings.drive),
           statistics(station.settings.rateHz),
           asked(station.settings) {
+        if (live) live->gingiva().clear();  // a sitting's time begins anew
         cutting.setEventListener([this](std::uint64_t, EventName name) {
             // With the pedal up the bur passes over the teeth around on its way; what it cuts even so is told.
             if (name == EventName::neighbourTouched && last.pedal <= 0.0) return;
@@ -192,6 +193,7 @@ struct LiveSession::State {
         });
         if ((sample.flags & messages::kOutOfBricks) != 0 && !std::exchange(outOfBricks, true)) notice("out-of-bricks");
         if (settings.lowerButtonUndoes && lower.take(sample)) post(TakeStep{CutSession::Step::undo});
+        if (live) live->gingiva().hear(sample, *inForce.settings.bur);
         if (listener) listener(sample);
     }
 
@@ -309,7 +311,9 @@ struct LiveSession::State {
             requests.push_front(request);
             return;
         }
-        if (!cutting.take(request.step, loop))
+        if (cutting.take(request.step, loop)) {
+            if (request.step == Step::reset && live) live->gingiva().clear();
+        } else
             notice(request.step == Step::undo   ? "nothing-to-undo"
                    : request.step == Step::redo ? "nothing-to-redo"
                                                 : "nothing-to-reset");

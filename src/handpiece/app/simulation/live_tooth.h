@@ -9,6 +9,7 @@
 #include <mutex>
 #include <vector>
 
+#include "handpiece/app/simulation/gingiva_cuts.h"
 #include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 #include "handpiece/senses/surface/brick_update.h"
@@ -49,6 +50,8 @@ class LiveTooth {
 
     // Anybody.
 
+    /// What was done to the gingiva around it.
+    [[nodiscard]] GingivaCuts& gingiva() noexcept { return gingiva_; }
     /// The surface before any cut, and news since the last call, in the order to be drawn. One reader: whoever asks for
     /// the uncut surface begins anew, and all that was cut so far is news again.
     [[nodiscard]] std::vector<surface::BrickUpdate> uncutSurface();
@@ -97,6 +100,7 @@ class LiveTooth {
     std::vector<StandingTooth> standing_;
     std::unique_ptr<Neighbours> neighbours_;  ///< null without any
     std::atomic<bool> hasNews_{false};
+    GingivaCuts gingiva_;
 };
 
 }  // namespace handpiece::simulation

@@ -9,6 +9,7 @@
 
 #include "handpiece/app/simulation/cut_session.h"
 #include "handpiece/app/simulation/history_bytes.h"
+#include "handpiece/app/simulation/recorded_gingiva.h"
 #include "handpiece/base/config/outside_json.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/model/case/case_bytes.h"
@@ -270,6 +271,7 @@ struct SessionPlayer::State {
                 continue;
             }
             const auto step = stepOf(event);
+            if (step == CutSession::Step::reset && live && !isRunningUp) live->gingiva().clear();
             // After a jump the steps before it are not known: the next key frame has the tooth.
             if (!step || isRunningUp || cutting->takeAgain(*step, *loop)) continue;
             if (isExact && !isOtherField)
@@ -290,6 +292,7 @@ struct SessionPlayer::State {
                 sample.tick = recorded.tick;
                 sample.timeS = timeOf(recorded.tick);
                 cutting->hear(sample);
+                if (live && !isRunningUp) live->gingiva().hear(sample, *station.settings.bur);
                 Record again = session::recordOf(sample);
                 if (!isExact) again.lastCommand = recorded.lastCommand;  // counted from the jump
                 if (again != recorded && differs++ == 0) firstDiffering = recorded.tick;
@@ -356,8 +359,12 @@ struct SessionPlayer::State {
             showWhole();
             return playTo(target, progress);
         }
-        const tooth::StateDelta state = jumpTo(static_cast<std::size_t>(after - frames.begin() - 1));
-        if (live) live->apply(tooth::changeBetween(live->state({}), state));
+        const auto frame = static_cast<std::size_t>(after - frames.begin() - 1);
+        const tooth::StateDelta state = jumpTo(frame);
+        if (live) {
+            live->apply(tooth::changeBetween(live->state({}), state));
+            hearRecorded(live->gingiva(), reader, events, first, frames[frame], where);
+        }
         playTo(target, progress);
     }
 
@@ -445,7 +452,9 @@ struct SessionPlayer::State {
     }
 
     void showWhole() {
-        if (live) live->apply(tooth::changeBetween(live->state({}), start));
+        if (!live) return;
+        live->apply(tooth::changeBetween(live->state({}), start));
+        live->gingiva().clear();
     }
 
     /// As the session's first segments leave it, this one the last.

@@ -14,7 +14,8 @@ namespace handpiece::dentition {
 
 inline constexpr double kFarMm = 4.3;  ///< distances to teeth are told up to here
 
-/// Signed distances from a tooth, in its frame, within kFarMm; looked up between nodes.
+/// Signed distances from a tooth, in its frame, within kFarMm; looked up between nodes. Farther off they are rounded
+/// where they have a crease, as between two roots: what lies so far from a tooth follows no one of them.
 class DistanceGrid {
   public:
     explicit DistanceGrid(const ToothBody& body);
@@ -25,6 +26,7 @@ class DistanceGrid {
         return values_[(k * count_[1] + j) * count_[0] + i];
     }
     void measure(const ToothBody& body, std::size_t stride);
+    void roundCreases();
 
     core::Vec3 from_;
     std::size_t count_[3];

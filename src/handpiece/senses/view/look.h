@@ -59,8 +59,6 @@ constexpr std::array<bool, cases::kTissueCount> allVisible() {
     return all;
 }
 
-inline constexpr std::size_t kMostBleeding = 24;
-
 struct Look {
     Quality quality = Quality::fast;
     Palette palette = Palette::natural;
@@ -80,8 +78,6 @@ struct Look {
     bool scanColours = true;  ///< those of an intraoral scan where there are any; with Palette::natural alone
     bool wet = true, debris = true, spray = true, shadows = true;
     bool contactArrow = false, forceArrow = false;
-    /// Where gingiva bleeds: it is red about these places. The first kMostBleeding count.
-    std::vector<core::Vec3> bleedingMm;
     bool scaleBar = false;  ///< 5 mm in steps of 1 mm, at the target's depth, lower left
     std::array<std::uint8_t, 3> backgroundTop{52, 58, 66}, backgroundBottom{20, 22, 26};
 

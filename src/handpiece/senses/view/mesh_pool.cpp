@@ -96,7 +96,8 @@ MeshPool::MeshPool() {
                    {1, 4, GL_INT_2_10_10_10_REV, true, offsetof(GpuVertex, normal)},
                    {2, 1, GL_UNSIGNED_BYTE, false, offsetof(GpuVertex, tissue), true},
                    {3, 1, GL_UNSIGNED_SHORT, true, offsetof(GpuVertex, removedUm)},
-                   {4, 4, GL_UNSIGNED_BYTE, true, offsetof(GpuVertex, scanned)}});
+                   {4, 4, GL_UNSIGNED_BYTE, true, offsetof(GpuVertex, scanned)},
+                   {5, 1, GL_UNSIGNED_BYTE, true, offsetof(GpuVertex, blood)}});
     array_.attachIndices(indices_);
 }
 

@@ -20,7 +20,7 @@ struct GpuVertex {
     std::array<float, 3> positionMm;
     std::uint32_t normal;  ///< 10 bits each
     std::uint8_t tissue;
-    std::uint8_t unused;
+    std::uint8_t blood;  ///< of gingiva: how thick a film lies on it, 255: 0.5 mm
     std::uint16_t removedUm;
     std::array<std::uint8_t, 4> scanned{};  ///< surface::ScanColour
 };

@@ -22,7 +22,7 @@ bool isDentine(cases::Tissue tissue) {
 }  // namespace
 
 void OverDentine::set(std::span<const cases::Part> parts) {
-    isThere_ = false;
+    known_ = Known::nothing;
     core::Box box;
     std::vector<geometry::TriangleTree> dentine;
     for (const cases::Part& part : parts) {
@@ -32,7 +32,11 @@ void OverDentine::set(std::span<const cases::Part> parts) {
                 box.extend(v);
         if (isDentine(part.tissue)) dentine.emplace_back(part.mesh);
     }
-    if (box.isEmpty() || dentine.empty()) return;
+    if (box.isEmpty()) return;
+    if (dentine.empty()) {
+        known_ = Known::none;
+        return;
+    }
     box = box.grown(kMarginMm);
     const core::Vec3 stepMm = box.size() / (kSide - 1);
     constexpr int kRows = kSide / kTilesAcross, kWide = kSide * kTilesAcross;
@@ -54,12 +58,12 @@ void OverDentine::set(std::span<const cases::Part> parts) {
     tiles_.fill(kWide, kRows * kSide, GL_R8, GL_RED, GL_UNSIGNED_BYTE, tiles.data(), true);
     lowMm_ = box.min.cast<float>();
     perMm_ = stepMm.cwiseInverse().cast<float>();
-    isThere_ = true;
+    known_ = Known::distances;
 }
 
 void OverDentine::give(gl::Program& program, int unit) const {
-    program.set("hasDentine", isThere_ ? 1 : 0);
-    if (!isThere_) return;
+    program.set("hasDentine", static_cast<int>(known_));
+    if (known_ != Known::distances) return;
     program.set("dentineTiles", tiles_, unit);
     program.set("dentineLow", lowMm_);
     program.set("perDentine", perMm_);

@@ -16,7 +16,8 @@ class OverDentine {
     static constexpr int kSide = 24, kTilesAcross = 6;  ///< as the shader has them
     static constexpr double kMostMm = 2.55;             ///< farther away it is all the same
 
-    /// Of a tooth's tissues; without enamel or dentine among them there is nothing to tell.
+    /// Of a tooth's tissues; without enamel among them there is nothing to tell, without dentine all
+    /// is far from it: a block of nothing else has no neck.
     void set(std::span<const cases::Part> parts);
     /// For a shader's overDentine().
     void give(gl::Program& program, int unit) const;
@@ -24,7 +25,7 @@ class OverDentine {
   private:
     gl::Texture tiles_;
     gl::Vec3f lowMm_ = gl::Vec3f::Zero(), perMm_ = gl::Vec3f::Ones();
-    bool isThere_ = false;
+    enum class Known { nothing, distances, none } known_ = Known::nothing;
 };
 
 }  // namespace handpiece::view

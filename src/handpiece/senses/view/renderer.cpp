@@ -461,6 +461,10 @@ void Renderer::setScenery(std::span<const cases::Part> parts) {
     state_->scene.setScenery(parts);
 }
 
+void Renderer::setGingivaCuts(std::vector<messages::GingivaCut> cuts, const core::Vec3& down) {
+    state_->scene.setGingivaCuts(std::move(cuts), down);
+}
+
 void Renderer::setParts(std::span<const cases::Part> parts) {
     state_->context.makeCurrent();
     state_->scene.setParts(parts);
@@ -513,6 +517,7 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
     FrameReport report;
     const double begin = nowMs();
     s.renewDepthScale(look);
+    report.bleeding = s.scene.bleed(moment.timeS);
     const Detail detail = s.detailFor(camera, viewport, look, report);
     const std::uint64_t drawnBefore = s.left.number;
     const bool one = look.stereo == Stereo::none;

@@ -15,6 +15,7 @@
 
 #include "handpiece/base/core/vec.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/base/messages/gingiva_cut.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/camera.h"
@@ -79,6 +80,7 @@ struct FrameReport {
     double drawMs = 0.0, readMs = 0.0;
     std::size_t triangles = 0;  ///< drawn, all passes
     bool toothRedrawn = false;  ///< all of it, or only where it changed (false)
+    bool bleeding = false;      ///< blood runs: some time later the picture is another
     bool refining = false;      ///< the view is still in motion or being refined: draw again soon
     /// Drawn again with nothing changed, the renderer gets on with what lets a moving eye see all detail.
     bool preparing = false;
@@ -110,6 +112,9 @@ class Renderer {
     void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours = {});
     /// cases::surroundings(): tooth number n is the part n - 1, and drawn no more once bricks of it have come.
     void setScenery(std::span<const cases::Part> parts);
+    /// What burs did to the gingiva of the scenery, by rising time, over which Moment::timeS goes; `down`: unit, as
+    /// gravity acts on the patient. None: it is whole.
+    void setGingivaCuts(std::vector<messages::GingivaCut> cuts, const core::Vec3& down);
     /// The tissues of the tooth under its surface, uncut: seen where Look::visible leaves out one of them. Forgotten by
     /// setTooth() and setMesh().
     void setParts(std::span<const cases::Part> parts);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "handpiece/model/case/held_aside.h"
 #include "handpiece/model/tooth/state_delta.h"
@@ -223,8 +224,10 @@ void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cas
     std::vector<MeshPiece> pieces =
         piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells), colours);
     if (tissue == cases::Tissue::neighbour) noteHeights(mesh, box.centre().z() > toothBounds_.max.z(), pieces);
-    for (const MeshPiece& piece : pieces)
-        to.push_back({tissue, pool_.add(piece), box, part, false});
+    for (MeshPiece& piece : pieces) {
+        to.push_back({tissue, pool_.add(piece), box, part, false, nullptr, 0});
+        if (tissue == cases::Tissue::gum) to.back().uncut = std::make_shared<const MeshPiece>(std::move(piece));
+    }
 }
 
 void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours) {
@@ -245,8 +248,32 @@ void Scene::setScenery(std::span<const cases::Part> parts) {
         for (std::size_t k = before; k < scenery_.size(); ++k)
             scenery_[k].isHeldAside = cases::isHeldAside(parts[i]);
     }
+    std::vector<Wounds::Piece> gingiva;
+    for (Static& s : scenery_)
+        if (s.uncut != nullptr) {
+            s.gingiva = static_cast<std::uint32_t>(gingiva.size() + 1);
+            gingiva.push_back({s.gingiva, s.mesh.minMm, s.mesh.maxMm, std::exchange(s.uncut, nullptr)});
+        }
+    wounds_.setGingiva(std::move(gingiva));
     measure();
     changeAll();
+}
+
+void Scene::setGingivaCuts(std::vector<messages::GingivaCut> cuts, const core::Vec3& down) {
+    wounds_.setCuts(std::move(cuts), down);
+}
+
+bool Scene::bleed(double timeS) {
+    for (const auto& [number, mesh] : wounds_.at(timeS)) {
+        const auto shown =
+            std::find_if(scenery_.begin(), scenery_.end(), [n = number](const Static& s) { return s.gingiva == n; });
+        if (shown == scenery_.end()) continue;
+        note(shown->mesh);
+        pool_.remove(shown->mesh);
+        shown->mesh = pool_.add(mesh);
+        note(shown->mesh);
+    }
+    return wounds_.isFlowing();
 }
 
 void Scene::setParts(std::span<const cases::Part> parts) {

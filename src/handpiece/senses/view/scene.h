@@ -19,6 +19,7 @@
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/mesh_pool.h"
 #include "handpiece/senses/view/over_dentine.h"
+#include "handpiece/senses/view/wounds.h"
 
 namespace handpiece::view {
 
@@ -32,6 +33,9 @@ class Scene {
     void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours);
     void setScenery(std::span<const cases::Part> parts);
     void setParts(std::span<const cases::Part> parts);
+    void setGingivaCuts(std::vector<messages::GingivaCut> cuts, const core::Vec3& down);
+    /// Gingiva as it is at a time. True where it will be another some time later: blood runs.
+    bool bleed(double timeS);
 
     [[nodiscard]] const core::Box& toothBounds() const noexcept { return toothBounds_; }
     /// All that may be seen, scenery too.
@@ -99,6 +103,8 @@ class Scene {
         core::Box wholeMm;     ///< of the part that it is a piece of
         std::size_t part = 0;  ///< its number
         bool isHeldAside = false;
+        std::shared_ptr<const MeshPiece> uncut;  ///< of gingiva, until the wounds have it
+        std::uint32_t gingiva = 0;               ///< its number there, from 1; 0: is none
     };
     void put(const surface::BrickUpdate& update, bool before);
     void drop(std::vector<Static>& meshes);
@@ -116,6 +122,7 @@ class Scene {
     bool sorted_ = true;
     std::vector<Static> mesh_, scenery_, parts_;
     OverDentine overDentine_;
+    Wounds wounds_;
     core::Box toothBounds_, bounds_;
     std::vector<Patch> patches_;
     std::map<std::array<int, 4>, std::uint32_t> patchAt_;  ///< by tooth and place

@@ -19,6 +19,7 @@ layout(location = 3) in float removed;
 layout(location = 4) in vec4 scanned;
 out vec4 scannedOut;
 #endif
+layout(location = 5) in float blood;
 uniform mat4 viewProjection;
 uniform int visibleTissues;
 #ifdef CLIPPED
@@ -27,7 +28,7 @@ uniform vec4 endPlane;  // of a mirror, or before a proximal side
 out float gl_ClipDistance[2];
 #endif
 out vec3 normalOut;
-out float removedOut;
+out vec2 removedOut;  // and blood
 flat out float kind;
 void main() {
     vec4 at = vec4(position, 1.0);
@@ -39,7 +40,7 @@ void main() {
     gl_ClipDistance[1] = dot(endPlane, at);
 #endif
     normalOut = 0.5 * normal.xyz + 0.5;
-    removedOut = removed;
+    removedOut = vec2(removed, blood);
 #ifdef SCANNED
     scannedOut = scanned;
 #endif
@@ -49,7 +50,7 @@ void main() {
 
 constexpr const char* kSurfaceFragment = R"(
 in vec3 normalOut;
-in float removedOut;
+in vec2 removedOut;
 flat in float kind;
 layout(location = 0) out vec4 surface;
 #ifdef SCANNED
@@ -74,7 +75,11 @@ void main() {
         k = 29.0;
     }
 #endif
-    float depth = min(2047.0, floor(removedOut * 6553.5));
+    float depth = min(2047.0, floor(removedOut.x * 6553.5));
+    if (k == 6.0 && removedOut.y > 0.004) {
+        k = 27.0;
+        depth = 64.0 * min(31.0, floor(depth / 33.0)) + floor(63.0 * min(1.0, removedOut.y));
+    }
     surface = vec4(normalOut, (k * 2048.0 + depth) / 65535.0);
 }
 )";
@@ -266,13 +271,11 @@ uniform vec4 material[32];  // wrap, gloss, sharpness of it, how far light goes 
 uniform float wet;
 uniform int natural;
 uniform vec2 crown;         // where it begins and ends along z
-uniform int hasDentine;     // how far it lies is known
+uniform int hasDentine;     // 1: how far it lies is known; 2: there is none
 uniform sampler2D dentineTiles;
 uniform vec3 dentineLow, perDentine;
 uniform int removedColours;
 uniform float removedMost;
-uniform int bleedings;
-uniform vec3 bleeding[24];
 #ifdef SCANNED
 uniform sampler2D scanned;
 #endif
@@ -342,9 +345,14 @@ void main() {
     float code = floor(g.w * 65535.0 + 0.5);
     int kind = int(code / 2048.0);
     vec3 n = g.xyz * 2.0 - 1.0;
+    float low = code - float(kind) * 2048.0, blood = 0.0;
+    if (kind == 27) {
+        blood = mod(low, 64.0) / 63.0;
+        low = 33.0 * floor(low / 64.0);
+        kind = 6;
+    }
     vec3 albedo = palette[kind];
     if (dot(n, n) < 0.1) {  // a section's face: as a drawing
-        float low = code - float(kind) * 2048.0;
         vec3 face = albedo * (low == 1.0 ? 0.55 : 0.92);
         if (low >= 1024.0) {
             face = mix(face, palette[30] * 0.92, mod(low, 32.0) / 31.0);
@@ -360,10 +368,15 @@ void main() {
     if (kind == 29) n = dot(n, v) < 0.0 ? -n : n;
     float nv = clamp(dot(n, v), 0.0, 1.0);
 
+    float eyeDepth = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+    vec3 across = (toTooth[0].xyz - at * toTooth[0].w) / h.w, upwards = (toTooth[1].xyz - at * toTooth[1].w) / h.w;
+    float pixelMm = 2.0 * length(across) / float(textureSize(surface, 0).x);
+    across = normalize(across);
+    upwards = normalize(upwards);
     float open = 1.0, lit = 1.0;
     {
         // From half resolution, without mixing near and far.
-        float z = depthTerms.y / (2.0 * d - 1.0 + depthTerms.x);
+        float z = eyeDepth;
         vec2 q = 0.5 * gl_FragCoord.xy - 0.25;
         ivec2 low = max(ivec2(floor(q)), ivec2(0)), last = textureSize(occlusion, 0) - 1;
         vec2 f = fract(q);
@@ -389,7 +402,7 @@ void main() {
             // is greyer and bluer. Where no dentine is known, by the height in the crown.
             float up = kind == 8 ? min(1.0, (code - 16384.0) / 2000.0)
                                  : clamp((at.z - crown.x) / (crown.y - crown.x), 0.0, 1.0);
-            float mm = kind == 1 && hasDentine != 0 ? overDentine(at)
+            float mm = kind == 1 && hasDentine == 2 ? 2.55 : kind == 1 && hasDentine == 1 ? overDentine(at)
                                                     : 0.12 + 0.95 * smoothstep(0.0, 0.55, up) + 0.5 * smoothstep(0.75, 1.0, up);
             albedo *= mix(vec3(1.0), vec3(0.93, 0.77, 0.53), exp2(-2.4 * mm));
             float clear = smoothstep(1.1, 2.0, mm) * (0.30 + 0.70 * (1.0 - nv));
@@ -415,7 +428,7 @@ void main() {
 #endif
         if (kind == 6) {
             albedo *= mix(vec3(0.93, 0.82, 0.84), vec3(1.05, 1.06, 1.04), grain);
-            gum((code - float(kind) * 2048.0) * 0.01, at, albedo, n, m);
+            gum(low * 0.01, at, albedo, n, m);
         }
     }
 #ifdef SCANNED
@@ -425,14 +438,13 @@ void main() {
     if (seen.a > 0.0) albedo = mix(albedo, pow(seen.rgb / seen.a, vec3(2.2)), seen.a);
 #endif
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
-        albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
+        albedo = texture(depthScale, vec2(low * 0.01 / removedMost, 0.5)).rgb;
 
-    if (kind == 6 && bleedings > 0) {
-        float nearest = 1e6;
-        for (int i = 0; i < bleedings; ++i) nearest = min(nearest, distance(at, bleeding[i]));
-        float dry = smoothstep(0.9, 1.5, nearest);
-        albedo = mix(vec3(0.26, 0.004, 0.006), albedo, dry);
-        m.yw *= mix(0.2, 1.0, dry);
+    if (blood > 0.0) {
+        // A film lets what is under it through, red; thick it is nearly black, and always wet.
+        float over = smoothstep(0.0, 0.10, blood);
+        albedo = mix(albedo, mix(vec3(0.30, 0.006, 0.008), vec3(0.085, 0.002, 0.003), smoothstep(0.1, 0.8, blood)), over);
+        m = mix(m, vec4(0.12, 0.75, 1.7, 0.15), over);
     }
 
     // Light goes into tissue and comes out beside: red farther than blue.
@@ -473,13 +485,19 @@ void main() {
     float sharp = m.z * mix(0.35, 1.0, wet);
     // Where the surface turns within a pixel a spark is as wide as the turn, and so much the fainter (after Tokuyoshi &
     // Kaplanyan 2019): the floor of a fissure is no row of dots.
-    float turn = 0.0;
+    float turn = 0.0, edge = 0.0;
     for (int i = 0; i < 4; ++i) {
         ivec2 o = (i & 2) * ivec2(i & 1, 1 - (i & 1)) - ivec2(i & 1, 1 - (i & 1));
-        vec3 beside = texelFetch(surface, clamp(p + o, ivec2(0), textureSize(surface, 0) - 1), 0).xyz * 2.0 - 1.0;
+        ivec2 q = clamp(p + o, ivec2(0), textureSize(surface, 0) - 1);
+        vec3 beside = texelFetch(surface, q, 0).xyz * 2.0 - 1.0;
         float isThere = abs(dot(beside, beside) - 1.0) < 0.5 ? 0.25 : 0.0;  // no background, no section's face
         turn += isThere * dot(beside - n, beside - n);
+        float away = depthTerms.y / (2.0 * texelFetch(depth, q, 0).r - 1.0 + depthTerms.x) - eyeDepth;
+        if (abs(away) < 10.0 * pixelMm) edge += 2.0 * isThere * dot(beside - n, float(o.x) * across + float(o.y) * upwards);
     }
+    // Two faces that the lamp lights alike differ by the edge between them: outward it catches the light, inward it is
+    // a line that no light reaches.
+    sum3 *= 1.0 + 0.15 * smoothstep(0.12, 0.5, edge) - 0.4 * open * smoothstep(0.12, 0.5, -edge);
     vec2 lobe = sharp * vec2(14.0, 110.0), width = 1.0 / (1.0 + turn * lobe);
     lobe *= width;
     float spark = width.x * exp(lobe.x * (nh - 1.0)) * 0.16 + wet * width.y * exp(lobe.y * (nh - 1.0)) * 0.95;

@@ -14,6 +14,9 @@
 
 namespace handpiece::view {
 
+/// Gingiva with blood on it: the code's lower 11 bits are 64 times how far under its margin (in 0.33 mm), and how thick
+/// the blood is (of 0.5 mm, 63 and more: all of that).
+inline constexpr int kBloodyKind = 27;
 inline constexpr int kInsideKind = 29;  ///< the back of a surface that was cut open
 inline constexpr int kGridKind = 30, kEdgeKind = 31;
 inline constexpr int kKinds = 32;

@@ -455,12 +455,6 @@ void ToothLayer::drawLight(Shaders& shaders, const Scene& scene, const gl::Textu
                                    : shaders.fineLight;
     light.use();
     if (isScanned) light.set("scanned", scanned_, 6);
-    std::array<Vec3f, kMostBleeding> bleeding;
-    const std::size_t bleeds = std::min(look.bleedingMm.size(), bleeding.size());
-    for (std::size_t i = 0; i < bleeds; ++i)
-        bleeding[i] = look.bleedingMm[i].cast<float>();
-    light.set("bleedings", static_cast<int>(bleeds));
-    if (bleeds > 0) light.set("bleeding", bleeding.data(), static_cast<int>(bleeds));
     light.set("surface", surface_, 0);
     light.set("depth", depth_, 1);
     light.set("occlusion", blurred_, 2);

@@ -43,7 +43,8 @@ Json toJson(const Part& part) {
             {"tissue", cases::properties(part.tissue).name},
             {"priority", part.priority},
             {"faces", part.mesh.triangles.size()},
-            {"volume_mm3", geometry::enclosedVolumeMm3(part.mesh)}};
+            {"volume_mm3", geometry::enclosedVolumeMm3(part.mesh)},
+            {"colours", !part.colours.empty()}};
 }
 
 Json toJson(const cases::Exercise& e) {
@@ -78,7 +79,8 @@ Json toJson(const Case& c, const std::string& place) {
         json["outer"] = {{"faces", c.outer.triangles.size()},
                          {"volume_mm3", geometry::enclosedVolumeMm3(c.outer)},
                          {"box_min_mm", toJson(box.min)},
-                         {"box_max_mm", toJson(box.max)}};
+                         {"box_max_mm", toJson(box.max)},
+                         {"colours", !c.outerColours.empty()}};
     }
     for (const Part& part : c.parts) {
         json["parts"].push_back(toJson(part));
@@ -99,6 +101,7 @@ Json toJson(const Case& c, const std::string& place) {
                                  {"name", other.name},
                                  {"cuttable", other.isCuttable},
                                  {"faces", other.surface().triangles.size()},
+                                 {"colours", !other.surfaceColours().empty()},
                                  {"position_mm", toJson(other.inCase.positionMm)},
                                  {"landmarks", other.landmarks.size()}});
     return json;
@@ -108,9 +111,14 @@ void row(std::string_view label, const std::string& value) {
     fmt::print("  {:<14} {}\n", label, value);
 }
 
+const char* coloursNote(const geometry::VertexColours& colours) {
+    return colours.empty() ? "" : ", with the scan's colours";
+}
+
 void printPart(const Part& part, std::string_view label) {
-    row(label, fmt::format("{} ({}, priority {}): {} faces, {:.4g} mm3", part.name, cases::properties(part.tissue).name,
-                           part.priority, part.mesh.triangles.size(), geometry::enclosedVolumeMm3(part.mesh)));
+    row(label, fmt::format("{} ({}, priority {}): {} faces, {:.4g} mm3{}", part.name,
+                           cases::properties(part.tissue).name, part.priority, part.mesh.triangles.size(),
+                           geometry::enclosedVolumeMm3(part.mesh), coloursNote(part.colours)));
 }
 
 void info(const std::string& place, bool json) {
@@ -123,17 +131,18 @@ void info(const std::string& place, bool json) {
     if (c.buccalSign != 0) row("buccal", c.buccalSign > 0 ? "+y" : "-y");
     if (!c.outer.triangles.empty()) {
         const core::Vec3 size = c.outer.bounds().size();
-        row("outer", fmt::format("{} faces, {:.4g} mm3, {:.4g} x {:.4g} x {:.4g} mm", c.outer.triangles.size(),
-                                 geometry::enclosedVolumeMm3(c.outer), size.x(), size.y(), size.z()));
+        row("outer", fmt::format("{} faces, {:.4g} mm3, {:.4g} x {:.4g} x {:.4g} mm{}", c.outer.triangles.size(),
+                                 geometry::enclosedVolumeMm3(c.outer), size.x(), size.y(), size.z(),
+                                 coloursNote(c.outerColours)));
     }
     for (const Part& part : c.parts)
         printPart(part, "part");
     for (const Part& part : c.scenery)
         printPart(part, "scenery");
     for (const cases::PlacedTooth& other : c.others)
-        row("tooth",
-            fmt::format("{}{}: {} faces{}", other.fdiNumber == 0 ? "" : fmt::format("{} ", other.fdiNumber), other.name,
-                        other.surface().triangles.size(), other.isCuttable ? "" : ", not to be cut"));
+        row("tooth", fmt::format("{}{}: {} faces{}{}", other.fdiNumber == 0 ? "" : fmt::format("{} ", other.fdiNumber),
+                                 other.name, other.surface().triangles.size(), coloursNote(other.surfaceColours()),
+                                 other.isCuttable ? "" : ", not to be cut"));
     if (!c.landmarks.empty()) row("landmarks", std::to_string(c.landmarks.size()));
     if (!c.tissuesToml.empty()) row("tissues", "a table of its own");
     if (c.exercise) {
@@ -228,7 +237,9 @@ Part partOf(const std::string& text, const cases::TissueTable& tissues, const Me
             throw core::Error(fmt::format("\"{}\" is no priority", head.substr(colon + 1)), option,
                               "give a whole number, -1000 to 1000");
     }
-    part.mesh = unit.read(file);
+    geometry::ColouredMesh read = unit.readColoured(file);
+    part.mesh = std::move(read.mesh);
+    part.colours = std::move(read.colours);
     return part;
 }
 
@@ -247,17 +258,28 @@ void makeNew(const NewOptions& o) {
         c.tissuesToml.assign(reinterpret_cast<const char*>(text.data()), text.size());
         c.tissues = cases::parseTissues(c.tissuesToml, o.tissues);
     }
-    if (!o.outer.empty()) c.outer = o.unit.read(o.outer);
+    if (!o.outer.empty()) {
+        geometry::ColouredMesh read = o.unit.readColoured(o.outer);
+        c.outer = std::move(read.mesh);
+        c.outerColours = std::move(read.colours);
+    }
     for (const std::string& part : o.parts)
         c.parts.push_back(partOf(part, c.tissues, o.unit, "--part"));
     for (const std::string& part : o.scenery)
         c.scenery.push_back(partOf(part, c.tissues, o.unit, "--scenery"));
     // The only part is the tooth.
-    if (c.outer.triangles.empty() && c.parts.size() == 1) c.outer = c.parts.front().mesh;
+    if (c.outer.triangles.empty() && c.parts.size() == 1) {
+        c.outer = c.parts.front().mesh;
+        c.outerColours = c.parts.front().colours;
+    }
+    // They are of the outside: what lies within is not seen.
+    for (Part& part : c.parts)
+        part.colours.clear();
     const std::vector<cases::CaseFinding> findings = findingsOf(c);
     if (isWrong(findings)) refuse(findings, o.out);
     cases::writeCase(c, out);
-    fmt::print("{}: {} parts, {} faces outside\n", o.out, c.parts.size(), c.outer.triangles.size());
+    fmt::print("{}: {} parts, {} faces outside{}\n", o.out, c.parts.size(), c.outer.triangles.size(),
+               coloursNote(c.outerColours));
     for (const cases::CaseFinding& f : findings)
         fmt::print("  note: {}{}\n", f.part.empty() ? "" : f.part + ": ", f.what);
 }

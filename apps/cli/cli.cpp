@@ -4,6 +4,7 @@
 #include "cli/app.h"
 #include "cli/commands.h"
 #include "cli/school_program.h"
+#include "handpiece/app/scan_case/textures.h"
 
 namespace handpiece::cli {
 
@@ -34,6 +35,7 @@ int run(int argc, const char* const* argv, const MethodRegistry& extraMethods, c
         addPassivityCommand(top);
     };
     app.begin = [&] {
+        scan_case::readTextures();
         for (const auto& [name, make] : extraLaws)
             force::addLaw(name, make);
     };

@@ -37,6 +37,15 @@ geometry::TriangleMesh MeshUnit::read(const std::string& file, geometry::ReadNot
     return geometry::scaled(std::move(mesh), mmPerUnit());
 }
 
+geometry::ColouredMesh MeshUnit::readColoured(const std::string& file, geometry::ReadNotes* notes) const {
+    geometry::ReadNotes found;
+    geometry::ColouredMesh read = geometry::readColouredMesh(fs::path(file), &found);
+    geometry::tellNotes(file, found);
+    if (notes) *notes = std::move(found);
+    read.mesh = geometry::scaled(std::move(read.mesh), mmPerUnit());
+    return read;
+}
+
 void addLengthUnit(Command& command, const char* name, std::string& unit, const char* help) {
     command.option(name, unit, help).showDefault().check(oneOf({"mm", "cm", "m", "inch", "um"}));
 }

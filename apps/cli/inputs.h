@@ -22,6 +22,9 @@ struct MeshUnit {
     [[nodiscard]] double mmPerUnit() const;
     /// A mesh file in millimetres; what was left out of it is told, and goes to `notes` besides. Throws core::Error.
     [[nodiscard]] geometry::TriangleMesh read(const std::string& file, geometry::ReadNotes* notes = nullptr) const;
+    /// The same with the colours that a scanner saw.
+    [[nodiscard]] geometry::ColouredMesh readColoured(const std::string& file,
+                                                      geometry::ReadNotes* notes = nullptr) const;
 };
 /// An option that takes a unit of length.
 void addLengthUnit(Command& command, const char* name, std::string& unit, const char* help);

@@ -148,7 +148,8 @@ std::string verdict(const MeshReport& r, const Prospect& prospect) {
 
 void info(const std::string& file, const MeshUnit& unit, bool json) {
     geometry::ReadNotes notes;
-    const geometry::TriangleMesh mesh = unit.read(file, &notes);
+    const geometry::ColouredMesh read = unit.readColoured(file, &notes);
+    const geometry::TriangleMesh& mesh = read.mesh;
     const MeshReport report = geometry::inspect(mesh);
     const std::vector<geometry::CrossingFaces> crossings = geometry::selfIntersections(mesh);
     const Prospect prospect = prospectOf(mesh, report, crossings.size(), file);
@@ -156,6 +157,7 @@ void info(const std::string& file, const MeshUnit& unit, bool json) {
         Json out{{"file", file}};
         out.update(studies::toJson(report));
         out["crossing_faces"] = crossings.size();
+        out["colours"] = !read.colours.empty();
         out["repair"] = nullptr;
         if (prospect.isNeeded)
             out["repair"] = {{"possible", prospect.isPossible},
@@ -167,6 +169,7 @@ void info(const std::string& file, const MeshUnit& unit, bool json) {
     }
     fmt::print("{}\n", file);
     printReport(report);
+    row("colours", read.colours.empty() ? "none" : "at its vertices");
     row("crossing faces",
         crossings.empty() ? "0"
                           : fmt::format("{}{}", counted(crossings.size(), "pair", "pairs"), at(crossings[0].pointMm)));
@@ -179,12 +182,17 @@ void repair(const RepairOptions& options) {
     if (format != geometry::MeshFormat::stl && format != geometry::MeshFormat::ply)
         throw core::Error("meshes are written as .stl or .ply", options.out, "name the output so");
     geometry::ReadNotes notes;
-    geometry::TriangleMesh mesh = options.unit.read(options.in, &notes);
+    const geometry::ColouredMesh read = options.unit.readColoured(options.in, &notes);
+    geometry::TriangleMesh mesh = read.mesh;
     const geometry::RepairReport r = mend(mesh, options.settings(), options.in, format);
-    geometry::writeMesh(options.out, mesh);
+    const bool keepsColours = !read.colours.empty() && format == geometry::MeshFormat::ply;
+    geometry::writeMesh(
+        options.out, mesh,
+        keepsColours ? geometry::coloursFrom(read.mesh, read.colours, mesh) : geometry::VertexColours());
     if (options.json) {
         Json out{{"file", options.in}, {"output", options.out}};
         out.update(studies::toJson(r));
+        out["colours"] = keepsColours;
         out["notes"] = notes;
         fmt::print("{}\n", out.dump(2, ' ', false, Json::error_handler_t::replace));
         return;
@@ -220,6 +228,9 @@ void repair(const RepairOptions& options) {
                                             "faces that crossed others or lay beside one"),
                                     r.removedCrossingAreaMm2));
     row("lost", fmt::format("{:.3g} mm2 of the outer surface's {:.6g} mm2", r.lostAreaMm2, r.after.areaMm2));
+    if (!read.colours.empty())
+        row("colours", keepsColours ? "kept; what closes a hole has those of its border"
+                                    : "left out: an STL holds none, name the output .ply to keep them");
     fmt::print("the result:\n");
     printReport(r.after);
     row("crossing faces", std::to_string(r.crossingFaces));

@@ -46,8 +46,8 @@ struct PictureOptions {
     double atS = -1.0, voxelUm = 50.0;
     int position = 0;  // 0: none
     std::size_t threads = 0;
-    bool atGiven = false, grid = false, noBur = false, noScenery = false, cheeks = false, mirror = false,
-         arrows = false, scaleBar = false, noCache = false;
+    bool atGiven = false, grid = false, noBur = false, noScenery = false, noScanColours = false, cheeks = false,
+         mirror = false, arrows = false, scaleBar = false, noCache = false;
 };
 
 std::vector<double> numbers(const std::string& text, std::size_t count, const std::string& option,
@@ -110,6 +110,7 @@ view::Look lookOf(const PictureOptions& o) {
     look.contactArrow = look.forceArrow = o.arrows;
     look.scaleBar = o.scaleBar;
     look.cheeks = o.cheeks;
+    look.scanColours = !o.noScanColours;
     return look;
 }
 
@@ -178,7 +179,7 @@ struct Subject {
     core::Box bounds;
     view::Standing standing;
     std::shared_ptr<simulation::LiveTooth> live;  ///< null: a mesh alone
-    std::optional<geometry::TriangleMesh> mesh;   ///< that one
+    geometry::ColouredMesh mesh;                  ///< that one
     std::vector<cases::Part> scenery, parts;
     std::shared_ptr<const instrument::Bur> bur;  ///< null: none is shown
     view::BurFinish finish = view::BurFinish::diamond;
@@ -287,8 +288,8 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
 
 Subject openMesh(const PictureOptions& o) {
     Subject subject;
-    subject.mesh = o.unit.read(o.what);
-    subject.bounds = subject.mesh->bounds();
+    subject.mesh = o.unit.readColoured(o.what);
+    subject.bounds = subject.mesh.mesh.bounds();
     return subject;
 }
 
@@ -376,7 +377,7 @@ void picture(const PictureOptions& o) {
         renderer.setParts(subject.parts);
         if (!o.noScenery) renderer.setScenery(subject.scenery);
     } else {
-        renderer.setMesh(*subject.mesh, cases::Tissue::enamel);
+        renderer.setMesh(subject.mesh.mesh, cases::Tissue::enamel, subject.mesh.colours);
     }
     if (subject.bur) {
         renderer.setBur(subject.bur->mesh(), subject.bur->lengthMm(), subject.bur->maxRadiusMm(), subject.finish);
@@ -423,6 +424,8 @@ void addPictureCommand(Command& app) {
     command.flag("--grid", o.grid, "millimetre lines on the section");
     command.option("--hide", o.hide, "tissues not to show, by name").delimiter(',');
     command.flag("--no-scenery", o.noScenery, "without other teeth, gingiva and bone");
+    command.flag("--no-scan-colours", o.noScanColours,
+                 "tissues as they are drawn, not as an intraoral scanner saw them");
     command.flag("--cheeks", o.cheeks, "with the lips and cheeks of the case; else they are held aside");
     command.option("--bur", o.bur.name, "this bur in its handpiece, resting on the middle of the crown");
     addLengthUnit(command, "--bur-unit", o.bur.unit, "unit of a bur that is a mesh file");

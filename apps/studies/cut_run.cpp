@@ -52,6 +52,7 @@ void writeCut(const simulation::SimulationSetup& station, const cases::Case& too
     cases::Case cut = toothCase;
     cut.outer = surface::closedSurface(source, core::part(progress, 0.0, 0.4));
     outcome.cutMeshMm3 = geometry::enclosedVolumeMm3(cut.outer);
+    cut.outerColours.clear();
     cut.parts.clear();
     const std::vector<cases::Tissue> tissues = station.tooth->tissues.tissues();
     for (std::size_t i = 0; i < tissues.size(); ++i) {

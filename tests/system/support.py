@@ -38,6 +38,32 @@ def write_stl(path, facets):
     return path
 
 
+def write_coloured_ply(path, facets, colour_of):
+    """Binary PLY as intraoral scanners write it: facets as for write_stl(), red, green and blue of a place in bytes."""
+    places = sorted({corner for facet in facets for corner in facet})
+    number = {place: i for i, place in enumerate(places)}
+    with open(path, "wb") as out:
+        out.write(f"ply\nformat binary_little_endian 1.0\ncomment a scan\nelement vertex {len(places)}\n"
+                  "property float x\nproperty float y\nproperty float z\nproperty uchar red\nproperty uchar green\n"
+                  f"property uchar blue\nproperty uchar alpha\nelement face {len(facets)}\n"
+                  "property list uchar int vertex_indices\nend_header\n".encode())
+        for place in places:
+            out.write(struct.pack("<3f4B", *place, *colour_of(place), 255))
+        for facet in facets:
+            out.write(struct.pack("<B3i", 3, *(number[corner] for corner in facet)))
+    return path
+
+
+def vertex_colours(path):
+    """Place to red, green and blue of the binary PLY that handpiece writes; empty where it holds none."""
+    head, body = pathlib.Path(path).read_bytes().split(b"end_header\n", 1)
+    if b"property uchar red" not in head:
+        return {}
+    count = int(head.split(b"element vertex ")[1].split()[0])
+    rows = (struct.unpack_from("<3d3B", body, 27 * i) for i in range(count))
+    return {row[:3]: row[3:] for row in rows}
+
+
 def box(low, high):
     """A closed box, counter-clockwise from outside."""
     v = [tuple((high if i >> axis & 1 else low)[axis] for axis in range(3)) for i in range(8)]

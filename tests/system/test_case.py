@@ -6,7 +6,7 @@ import re
 import unittest
 import zipfile
 
-from support import SystemTest, box, write_stl
+from support import SystemTest, ball, box, vertex_colours, write_coloured_ply, write_stl
 
 
 class Case(SystemTest):
@@ -40,6 +40,34 @@ class Case(SystemTest):
         self.ok("case", "pack", self.folder / "m.handpiece", self.folder / "again")
         self.assertEqual((self.folder / "again" / "outer.stl").read_bytes(),
                          (self.folder / "molar" / "outer.stl").read_bytes())
+
+    def test_a_scan_in_colour_stays_so(self):
+        def halves(place):
+            return (190, 30, 30) if place[0] < 0 else (30, 170, 40)
+
+        scan = write_coloured_ply(self.folder / "scan.ply", ball(4, 12), halves)
+        made = self.ok("case", "new", "--out", self.folder / "c", "--part", f"enamel={scan}", "--scenery", f"gum={scan}")
+        self.assertIn("with the scan's colours", made.stdout)
+        self.assertIn("with the scan's colours", self.ok("case", "info", self.folder / "c").stdout)
+        info = json.loads(self.ok("case", "info", self.folder / "c", "--json").stdout)
+        self.assertTrue(info["outer"]["colours"])
+        self.assertTrue(info["scenery"][0]["colours"])
+        self.assertFalse(info["parts"][0]["colours"], "what lies within is not seen")
+        colours = vertex_colours(self.folder / "c" / "outer.ply")
+        self.assertTrue(colours)
+        self.assertEqual(colours, {place: halves(place) for place in colours})
+        self.ok("case", "pack", self.folder / "c", self.folder / "c.handpiece")
+        self.ok("case", "pack", self.folder / "c.handpiece", self.folder / "again")
+        self.assertEqual((self.folder / "again" / "outer.ply").read_bytes(),
+                         (self.folder / "c" / "outer.ply").read_bytes())
+        plain = write_stl(self.folder / "plain.stl", ball(4, 12))
+        self.ok("case", "new", "--out", self.folder / "p", "--part", f"enamel={plain}")
+        other = json.loads(self.ok("case", "info", self.folder / "p", "--json").stdout)
+        self.assertFalse(other["outer"]["colours"])
+        self.assertEqual(other["content_key"], info["content_key"], "the colours make no other tooth")
+        broken = self.folder / "c" / "outer.ply"
+        broken.write_bytes(broken.read_bytes()[:-20])
+        self.refused("case", "info", self.folder / "c", mentions=["outer.ply", "ends"])
 
     def test_what_is_wrong_is_told_and_nothing_written(self):
         self.parts()

@@ -6,7 +6,7 @@ import math
 import random
 import unittest
 
-from support import SystemTest, ball, box, open_arch, write_stl
+from support import SystemTest, ball, box, open_arch, vertex_colours, write_coloured_ply, write_stl
 
 
 class MakeAndMesh(SystemTest):
@@ -139,6 +139,29 @@ class MakeAndMesh(SystemTest):
         self.assertAlmostEqual(after["volume_mm3"] / whole, 1, delta=0.05)
         # A mended mesh is felt.
         self.ok("probe", "--tooth", mended, "--bur", "round-4", "--poses", "-", stdin="0,0,9,1,0,0,0\n")
+
+    def test_repair_keeps_the_colours_of_a_scan(self):
+        def halves(place):
+            return (190, 30, 30) if place[0] < 0 else (30, 170, 40)
+
+        # Its left cap is missing.
+        open_scan = [facet for facet in ball(4, 12) if sum(corner[0] for corner in facet) / 3 > -3.2]
+        scan = write_coloured_ply(self.folder / "scan.ply", open_scan, halves)
+        self.assertIn("at its vertices", self.ok("mesh", "info", scan).stdout)
+        self.assertTrue(json.loads(self.ok("mesh", "info", scan, "--json").stdout)["colours"])
+        self.assertIn("kept", self.ok("mesh", "repair", scan, self.folder / "mended.ply").stdout)
+        mended = json.loads(self.ok("mesh", "info", self.folder / "mended.ply", "--json").stdout)
+        self.assertTrue(mended["colours"])
+        self.assertEqual(mended["open_edges"], 0)
+        colours = vertex_colours(self.folder / "mended.ply")
+        self.assertEqual(colours, {place: halves(place) for place in colours})
+        self.assertIn("an STL holds none", self.ok("mesh", "repair", scan, self.folder / "mended.stl").stdout)
+        self.assertFalse(json.loads(self.ok("mesh", "info", self.folder / "mended.stl", "--json").stdout)["colours"])
+        # On a base, walls and floor have the border's.
+        self.ok("mesh", "repair", scan, self.folder / "base.ply", "--base")
+        colours = vertex_colours(self.folder / "base.ply")
+        self.assertTrue(all(colour == (190, 30, 30) for place, colour in colours.items() if place[0] < -3.3))
+        self.assertTrue(any(place[0] < -3.3 for place in colours))
 
     def test_an_open_arch_is_closed_or_stood_on_a_base(self):
         rng = random.Random(20261130)

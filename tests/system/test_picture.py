@@ -7,7 +7,7 @@ import struct
 import unittest
 import zlib
 
-from support import SystemTest, ball, box, write_stl
+from support import SystemTest, ball, box, write_coloured_ply, write_stl
 
 
 def read_png(path):
@@ -88,6 +88,43 @@ class Picture(SystemTest):
                              ("--stereo", "side-by-side"), ("--palette", "textbook"),
                              ("--eye", "0,-40,10", "--target", "0,0,0"))}
         self.assertEqual(len(seen), 11)
+
+    def test_a_scan_in_colour_is_seen_so(self):
+        def halves(place):
+            return (190, 30, 30) if place[0] < 0 else (30, 170, 40)
+
+        def seen(what, *more):
+            _, _, rows = self.picture(what, "--view", "occlusal", "--voxel", "100", *more, size="100x100")
+            return rows[42][4 * 30:4 * 30 + 3], rows[42][4 * 70:4 * 70 + 3]
+
+        scan = write_coloured_ply(self.folder / "scan.ply", ball(4, 40), halves)
+        self.ok("case", "new", "--out", self.folder / "case", "--outer", scan, "--part", f"enamel={scan}")
+        # The mesh alone, the mesh as a tooth with a bur, and the case made of it.
+        for what, more in ((scan, ()), (scan, ("--bur", "330")), (self.folder / "case", ())):
+            with self.subTest(what=what.name, more=more):
+                sides = seen(what, *more)
+                # Mesial is +x and lies on one side or the other as charts have it.
+                self.assertEqual(sum(1 for r, g, b in sides if r > 2 * g and r > 2 * b), 1, sides)
+                self.assertEqual(sum(1 for r, g, b in sides if 2 * g > 3 * r and 2 * g > 3 * b), 1, sides)
+                for r, g, b in seen(what, *more, "--no-scan-colours"):
+                    self.assertLess(abs(r - g), 40)
+
+    def test_where_a_scan_is_cut_its_colours_end(self):
+        scan = write_coloured_ply(self.folder / "scan.ply", ball(4, 24),
+                                  lambda place: (190, 30, 30) if place[2] < 0 else (30, 40, 190))
+        self.ok("case", "new", "--out", self.folder / "case", "--outer", scan, "--part", f"enamel={scan}")
+        self.ok("run", "--case", self.folder / "case", "--bur", "cylinder-round:1.6x4.0", "--motion", "plunge", "--voxel",
+                "100", "--out", self.folder / "cut")
+        blue = {}
+        for look in ("now", "before"):
+            _, _, rows = self.picture(self.folder / "cut" / "attempt", "--view", "occlusal", "--look", look, size="100x100")
+            blue[look] = {(x, y) for y, row in enumerate(rows) for x in range(100)
+                          if row[4 * x + 2] > 3 * row[4 * x] // 2 and row[4 * x + 2] > 70}
+        # Uncut it is blue to its rim; then the bur's 1.6 of 8 mm are not, and all else still is.
+        self.assertGreater(len(blue["before"]), 2500)
+        gone = blue["before"] - blue["now"]
+        self.assertGreater(len(gone), 60)
+        self.assertTrue(all(abs(x - 50) < 22 and abs(y - 50) < 22 for x, y in gone), sorted(gone)[:5])
 
     def test_words_are_read_before_files(self):
         # A tooth may take a minute to prepare: a typing error must not wait for it. Here there is not even a file.

@@ -87,7 +87,7 @@ void ViewWidget::showSketch(const cases::Case& sketch) {
             shown.push_back(part);
     }
     if (!sketch.outer.triangles.empty()) bounds = sketch.outer.bounds();
-    if (shown.empty()) shown = {{"tooth", cases::Tissue::enamel, 0, sketch.outer}};
+    if (shown.empty()) shown = {{"tooth", cases::Tissue::enamel, 0, sketch.outer, false, sketch.outerColours}};
     if (shown.front().mesh.triangles.empty()) return;
     for (cases::Part& part : cases::surroundings(sketch))
         shown.push_back(std::move(part));

@@ -7743,6 +7743,18 @@ lingual: %4</source>
         <translation>濡れたエナメル質のつやを表示します</translation>
     </message>
     <message>
+        <source>Colours of the scan</source>
+        <translation>スキャンの色</translation>
+    </message>
+    <message>
+        <source>As an intraoral scanner saw the uncut surface; with colours as in the mouth</source>
+        <translation>削っていない表面を口腔内スキャナーが撮影した色で表示します（「口腔内の色」のとき）</translation>
+    </message>
+    <message>
+        <source>No surface of this case was scanned in colour</source>
+        <translation>このケースには色付きでスキャンされた表面がありません</translation>
+    </message>
+    <message>
         <source>Water spray</source>
         <translation>注水</translation>
     </message>

@@ -20,6 +20,7 @@
 #include "desktop/widgets/status_line.h"
 #include "desktop/work/simulator.h"
 #include "desktop/work/this_language.h"
+#include "handpiece/app/scan_case/textures.h"
 #include "handpiece/base/geometry/read_notes.h"
 
 namespace handpiece::desktop {
@@ -198,6 +199,7 @@ FilesFeature::~FilesFeature() {
 }
 
 void FilesFeature::hearOfFiles() {
+    scan_case::readTextures();
     ear_ = std::make_shared<Ear>();
     ear_->of = this;
     geometry::listenToNotes([ear = ear_](const std::string& where, const std::string& note) {
@@ -381,7 +383,8 @@ void FilesFeature::mend() {
     auto* dialog = new MendDialog(toPath(file), &window_);
     connect(dialog, &MendDialog::saveRequested, this, [this, dialog, file] {
         const QFileInfo info(file);
-        const QString start = info.dir().filePath(tr("%1-mended.stl").arg(info.completeBaseName()));
+        QString start = info.dir().filePath(tr("%1-mended.stl").arg(info.completeBaseName()));
+        if (dialog->hasColours() && start.endsWith(QStringLiteral(".stl"))) start.replace(start.size() - 3, 3, "ply");
         const QString to =
             window_.questions.fileToSave(tr("Save the mended surface"), start, tr("Surfaces (*.stl *.ply)"));
         if (to.isEmpty()) return;

@@ -54,6 +54,7 @@ QString mendWords(const geometry::RepairReport& report) {
 
 struct MendDialog::Mended {
     geometry::TriangleMesh mesh;
+    geometry::VertexColours colours;
     geometry::RepairReport report;
 };
 
@@ -86,9 +87,11 @@ MendDialog::MendDialog(const std::filesystem::path& file, QWidget* parent)
     connect(save_, &QPushButton::clicked, this, &MendDialog::saveRequested);
 
     job_ = std::make_unique<Job>(windowTitle(), [file, mended = mended_](const core::Progress&) {
-        mended->mesh = geometry::readMesh(file);
+        const geometry::ColouredMesh read = geometry::readColouredMesh(file);
+        mended->mesh = read.mesh;
         mended->report = geometry::repair(mended->mesh);
         geometry::requireUncrossed(mended->report, {}, file.string());
+        mended->colours = geometry::coloursFrom(read.mesh, read.colours, mended->mesh);
     });
     connect(job_.get(), &Job::done, this, [this] { tell(mended_->report); });
     connect(job_.get(), &Job::failed, this, [this](const Problem& problem) {
@@ -108,7 +111,11 @@ void MendDialog::tell(const geometry::RepairReport& report) {
 }
 
 void MendDialog::save(const std::filesystem::path& file) const {
-    geometry::writeMesh(file, mended_->mesh);
+    geometry::writeMesh(file, mended_->mesh, mended_->colours);
+}
+
+bool MendDialog::hasColours() const {
+    return !mended_->colours.empty();
 }
 
 }  // namespace handpiece::desktop

@@ -31,6 +31,8 @@ class MendDialog : public QDialog {
     ~MendDialog() override;
     /// Throws core::Error. Once the surface is mended.
     void save(const std::filesystem::path& file) const;
+    /// Those of a scan, which a .ply keeps and an .stl does not.
+    [[nodiscard]] bool hasColours() const;
 
   signals:
     void saveRequested();

@@ -114,6 +114,8 @@ ViewBar::ViewBar(QWidget* parent) : QWidget(parent) {
     scaleBar_ = box(tr("Scale bar"), "showScaleBar", tr("A scale in millimetres in the picture"),
                     [](view::Look& l, bool on) { l.scaleBar = on; });
     wet_ = box(tr("Wet tooth"), "showWet", tr("Shine of wet enamel"), [](view::Look& l, bool on) { l.wet = on; });
+    scanColours_ = box(tr("Colours of the scan"), "showScanColours", scanColoursTip(),
+                       [](view::Look& l, bool on) { l.scanColours = on; });
     spray_ = box(tr("Water spray"), "showSpray", tr("Water from the handpiece"),
                  [](view::Look& l, bool on) { l.spray = on; });
     debris_ = box(tr("Debris"), "showDebris", tr("What flies off while cutting"),
@@ -157,6 +159,10 @@ ViewBar::ViewBar(QWidget* parent) : QWidget(parent) {
     setDetail(Detail::practice);
 }
 
+QString ViewBar::scanColoursTip() {
+    return tr("As an intraoral scanner saw the uncut surface; with colours as in the mouth");
+}
+
 void ViewBar::tell() {
     emit lookChanged(look_);
 }
@@ -182,6 +188,7 @@ void ViewBar::showLook() {
     check(removed_, look_.removedDepthColours);
     check(scaleBar_, look_.scaleBar);
     check(wet_, look_.wet);
+    check(scanColours_, look_.scanColours);
     check(spray_, look_.spray);
     check(debris_, look_.debris);
     check(shadows_, look_.shadows);
@@ -201,6 +208,11 @@ void ViewBar::setPresent(const std::vector<cases::Tissue>& tissues) {
 void ViewBar::setCheeksThere(bool there) {
     cheeks_->setEnabled(there);
     cheeks_->setToolTip(there ? tr("Those of the case; else they are held aside") : tr("This case has none"));
+}
+
+void ViewBar::setScanColoursThere(bool there) {
+    scanColours_->setEnabled(there);
+    scanColours_->setToolTip(there ? scanColoursTip() : tr("No surface of this case was scanned in colour"));
 }
 
 void ViewBar::makeTissueBoxes() {

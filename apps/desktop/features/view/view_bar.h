@@ -33,6 +33,8 @@ class ViewBar : public QWidget {
     void setPresent(const std::vector<cases::Tissue>& tissues);
     /// Whether the case has lips and cheeks.
     void setCheeksThere(bool there);
+    /// Whether something in the case has the colours of a scan.
+    void setScanColoursThere(bool there);
     void setPermissions(const exercise::Permissions& permissions);
     void setDetail(Detail detail);
 
@@ -42,6 +44,7 @@ class ViewBar : public QWidget {
     void lookChanged(const view::Look& look);
 
   private:
+    [[nodiscard]] static QString scanColoursTip();
     void tell();
     void showLook();
     void makeTissueBoxes();
@@ -52,7 +55,8 @@ class ViewBar : public QWidget {
     std::array<QToolButton*, 6> views_{};
     QToolButton* fit_;
     QComboBox *palette_, *quality_, *shown_, *stereo_;
-    QCheckBox *removed_, *wet_, *debris_, *spray_, *shadows_, *scaleBar_, *contact_, *force_, *turbine_, *cheeks_;
+    QCheckBox *removed_, *wet_, *scanColours_, *debris_, *spray_, *shadows_, *scaleBar_, *contact_, *force_, *turbine_,
+        *cheeks_;
     QLabel *stereoName_, *qualityName_, *tissuesName_;
     QGridLayout* tissueGrid_;
     std::vector<std::pair<cases::Tissue, QCheckBox*>> tissueBoxes_;

@@ -187,6 +187,7 @@ void ViewFeature::showDocument() {
     bar_->setPermissions(simulator_.permissions());
     bar_->setPresent(presentTissues(toothCase));
     bar_->setCheeksThere(std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(), cases::isHeldAside));
+    bar_->setScanColoursThere(cases::isScannedInColour(toothCase));
     recallEye();
     if (simulator_.mode() == Simulator::Mode::review) view_.setSample(simulator_.sample());
     // Who marks or types beside it goes on there when a work that is looked at comes.
@@ -208,6 +209,7 @@ void ViewFeature::recallLook() {
     look.palette = static_cast<view::Palette>(number("palette", static_cast<int>(look.palette), 2));
     look.stereo = static_cast<view::Stereo>(number("stereo", 0, 2));
     look.wet = flag("wet", look.wet);
+    look.scanColours = flag("scanColours", look.scanColours);
     look.debris = flag("debris", look.debris);
     look.spray = flag("spray", look.spray);
     look.shadows = flag("shadows", look.shadows);
@@ -226,6 +228,7 @@ void ViewFeature::keepLook(const view::Look& look) {
     set("palette", static_cast<int>(look.palette));
     set("stereo", static_cast<int>(look.stereo));
     set("wet", look.wet);
+    set("scanColours", look.scanColours);
     set("debris", look.debris);
     set("spray", look.spray);
     set("shadows", look.shadows);

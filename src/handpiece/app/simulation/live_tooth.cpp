@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "handpiece/app/simulation/simulation_setup.h"
+#include "handpiece/base/core/parallel.h"
 #include "handpiece/senses/surface/brick_source.h"
+#include "handpiece/senses/surface/scan_colours.h"
 
 namespace handpiece::simulation {
 namespace {
@@ -64,8 +66,24 @@ struct LiveTooth::Parts {
         }
         return moved;
     }
+    /// The feeder's, and without the mutex: what a scan's colours are looked up in changes only with the surfaces.
+    [[nodiscard]] std::vector<surface::BrickUpdate> updatesOf(const std::vector<std::uint32_t>& dense) const {
+        std::vector<surface::BrickUpdate> updates(dense.size());
+        core::parallelFor(dense.size(), 16, [&](std::size_t from, std::size_t to) {
+            for (std::size_t i = from; i < to; ++i)
+                updates[i] = updateOf(dense[i]);
+        });
+        return updates;
+    }
     [[nodiscard]] surface::BrickUpdate updateOf(std::uint32_t dense) const {
-        return {tooth::brickId(number, dense), false, placed(fine.mesh(dense)), placed(coarse.mesh(dense)), nullptr};
+        const tooth::ToothModel& model = mirror.model();
+        return {tooth::brickId(number, dense),
+                false,
+                placed(fine.mesh(dense)),
+                placed(coarse.mesh(dense)),
+                nullptr,
+                surface::scanColours(model, fine.mesh(dense).get()),
+                surface::scanColours(model, coarse.mesh(dense).get())};
     }
     void tell(const surface::BrickUpdate& update) {
         told[tooth::denseOf(update.id)] = update;
@@ -231,10 +249,10 @@ void LiveTooth::build(const tooth::StateDelta& state, const core::Progress& prog
         p.coarse.setLevel(dense, kCoarseLevel);
     p.fine.build(core::part(progress, 0.0, 0.6));
     p.coarse.build(core::part(progress, 0.6, 0.9));
-    for (std::uint32_t dense = 0; dense < count; ++dense) {
-        surface::BrickUpdate update = p.updateOf(dense);
-        if (update.mesh != nullptr || update.coarse != nullptr) p.uncut.push_back(std::move(update));
-    }
+    std::vector<std::uint32_t> shown;
+    for (std::uint32_t dense = 0; dense < count; ++dense)
+        if (p.fine.mesh(dense) != nullptr || p.coarse.mesh(dense) != nullptr) shown.push_back(dense);
+    p.uncut = p.updatesOf(shown);
     warmed.wait();
     if (!state.bricks.empty()) {
         apply(state);
@@ -321,10 +339,10 @@ void LiveTooth::shape(std::unique_lock<std::mutex> lock) {
             if (std::binary_search(changed.begin(), changed.end(), dense) || isNearCut(dense)) all.push_back(dense);
         changed = std::move(all);
     }
+    std::vector<surface::BrickUpdate> updates = p.updatesOf(changed);
     lock.lock();
-    for (const std::uint32_t dense : changed) {
-        surface::BrickUpdate update = p.updateOf(dense);
-        if (const auto mesh = p.fine.mesh(dense); p.wantsDepths && mesh != nullptr) {
+    for (surface::BrickUpdate& update : updates) {
+        if (const auto mesh = p.fine.mesh(tooth::denseOf(update.id)); p.wantsDepths && mesh != nullptr) {
             std::vector<std::array<float, 3>> places;
             places.reserve(mesh->vertices.size());
             for (const surface::SurfaceVertex& v : mesh->vertices)

@@ -87,7 +87,7 @@ MeshFormat detect(std::span<const std::byte> data, std::string_view text, MeshFo
     return data.size() > 84 && !isText(text) ? MeshFormat::stl : MeshFormat::unknown;
 }
 
-TriangleMesh readTold(const Source& source, MeshFormat hint) {
+TriangleMesh readTold(const Source& source, MeshFormat hint, VertexColours* colours) {
     if (source.data.empty()) source.fail("the file is empty", "export or download the mesh again");
     if (!formats::isExactBinaryStl(source.data)) formats::refuseForeign(source);
     bool binary = false;
@@ -105,10 +105,10 @@ TriangleMesh readTold(const Source& source, MeshFormat hint) {
             mesh = binary ? formats::readBinaryStl(source) : formats::readAsciiStl(source);
             break;
         case MeshFormat::ply:
-            mesh = formats::readPly(source);
+            mesh = formats::readPly(source, colours);
             break;
         case MeshFormat::obj:
-            mesh = formats::readObj(source);
+            mesh = formats::readObj(source, colours);
             break;
         case MeshFormat::unknown:
             source.fail("this is no STL, PLY or OBJ file", "give a mesh in one of these formats");
@@ -119,6 +119,22 @@ TriangleMesh readTold(const Source& source, MeshFormat hint) {
     if (flat > 0)
         source.note(fmt::format("{} of {} faces {} two corners in one place and count{} for nothing", flat,
                                 mesh.triangles.size(), flat == 1 ? "has" : "have", flat == 1 ? "s" : ""));
+    return mesh;
+}
+
+TriangleMesh readNoting(std::span<const std::byte> data, MeshFormat hint, const std::string& where, ReadNotes* notes,
+                        VertexColours* colours, const std::filesystem::path& folder = {}) {
+    // Some editors put a byte order mark before text; it would hide the first word.
+    if (data.size() >= 3 && data[0] == std::byte{0xef} && data[1] == std::byte{0xbb} && data[2] == std::byte{0xbf} &&
+        !formats::isExactBinaryStl(data))
+        data = data.subspan(3);
+    ReadNotes found;
+    const Source source{data, where, &found, folder};
+    TriangleMesh mesh = readTold(source, hint, colours);
+    if (notes)
+        notes->insert(notes->end(), found.begin(), found.end());
+    else
+        tellNotes(where, found);
     return mesh;
 }
 
@@ -137,18 +153,22 @@ TriangleMesh readMesh(const std::filesystem::path& path, ReadNotes* notes) {
 }
 
 TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where, ReadNotes* notes) {
-    // Some editors put a byte order mark before text; it would hide the first word.
-    if (data.size() >= 3 && data[0] == std::byte{0xef} && data[1] == std::byte{0xbb} && data[2] == std::byte{0xbf} &&
-        !formats::isExactBinaryStl(data))
-        data = data.subspan(3);
-    ReadNotes found;
-    const Source source{data, where, &found};
-    TriangleMesh mesh = readTold(source, hint);
-    if (notes)
-        notes->insert(notes->end(), found.begin(), found.end());
-    else
-        tellNotes(where, found);
-    return mesh;
+    return readNoting(data, hint, where, notes, nullptr);
+}
+
+ColouredMesh readColouredMesh(const std::filesystem::path& path, ReadNotes* notes) {
+    const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : std::filesystem::path(".");
+    ColouredMesh read;
+    read.mesh = readNoting(core::readFile(path, kMaxMeshBytes), meshFormatOf(path), path.string(), notes, &read.colours,
+                           folder);
+    return read;
+}
+
+ColouredMesh readColouredMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where,
+                              ReadNotes* notes) {
+    ColouredMesh read;
+    read.mesh = readNoting(data, hint, where, notes, &read.colours);
+    return read;
 }
 
 }  // namespace handpiece::geometry

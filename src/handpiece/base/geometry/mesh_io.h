@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
+#include "handpiece/base/geometry/vertex_colours.h"
 
 namespace handpiece::geometry {
 
@@ -38,14 +39,26 @@ using ReadNotes = std::vector<std::string>;
 [[nodiscard]] TriangleMesh readMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where,
                                     ReadNotes* notes = nullptr);
 
+/// The same with the colours of its vertices: PLY's red, green and blue, 8 or 16 bits or float, and OBJ's behind the
+/// coordinates or in the pictures of its materials (texture.h; files beside the mesh). Empty where the file has none.
+/// What cannot be believed (no numbers, beyond their range, not at all vertices, one colour for all) is left out and
+/// told; the surface is read all the same.
+[[nodiscard]] ColouredMesh readColouredMesh(const std::filesystem::path& path, ReadNotes* notes = nullptr);
+[[nodiscard]] ColouredMesh readColouredMesh(std::span<const std::byte> data, MeshFormat hint, const std::string& where,
+                                            ReadNotes* notes = nullptr);
+
 /// Binary STL (float32), written whole or not at all. Throws core::Error, also for indices out of range.
 void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh);
 /// The same in memory; `where` names it in errors.
 [[nodiscard]] std::vector<std::byte> stlBytes(const TriangleMesh& mesh, const std::string& where);
-/// Binary little-endian PLY with double coordinates: nothing is lost. Written whole or not at all.
-void writePly(const std::filesystem::path& path, const TriangleMesh& mesh);
-/// writeStl or writePly by the extension; throws core::Error for any other.
-void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh);
+/// Binary little-endian PLY with double coordinates and, where there are any, colours: nothing is lost. Written whole
+/// or not at all.
+void writePly(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexColours& colours = {});
+/// The same in memory; `where` names it in errors.
+[[nodiscard]] std::vector<std::byte> plyBytes(const TriangleMesh& mesh, const VertexColours& colours,
+                                              const std::string& where);
+/// writeStl (which holds no colours) or writePly by the extension; throws core::Error for any other.
+void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexColours& colours = {});
 
 /// Throws core::Error when a triangle names a vertex that is not there or a vertex is not finite.
 void requireValidIndices(const TriangleMesh& mesh, const std::string& where);

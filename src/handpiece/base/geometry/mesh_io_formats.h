@@ -26,6 +26,7 @@ struct Source {
     std::span<const std::byte> data;
     const std::string& where;
     ReadNotes* notes;
+    std::filesystem::path folder{};  ///< where what the file names is looked for; empty: nowhere
 
     [[nodiscard]] std::string_view text() const { return {reinterpret_cast<const char*>(data.data()), data.size()}; }
     void note(std::string sentence) const {
@@ -43,8 +44,9 @@ void refuseForeign(const Source& source);
 [[nodiscard]] bool isExactBinaryStl(std::span<const std::byte> data);
 [[nodiscard]] TriangleMesh readBinaryStl(const Source& source);
 [[nodiscard]] TriangleMesh readAsciiStl(const Source& source);
-[[nodiscard]] TriangleMesh readPly(const Source& source);
-[[nodiscard]] TriangleMesh readObj(const Source& source);
+/// `colours`: what the file says of them is taken too; null: passed over.
+[[nodiscard]] TriangleMesh readPly(const Source& source, VertexColours* colours);
+[[nodiscard]] TriangleMesh readObj(const Source& source, VertexColours* colours);
 
 /// Faces a mesh may have: their corners must be countable in 31 bits.
 inline constexpr std::uint64_t kMaxFaces = (std::uint64_t{1} << 31) / 3;
@@ -67,6 +69,20 @@ struct BadCoordinates {
                                     count == 1 ? thing : things, count == 1 ? "is" : "are", thing, first + 1),
                         "export the mesh again");
     }
+};
+
+/// Colours as a file has them, by vertex: numbers on a scale that only all of them together tell.
+class FoundColours {
+  public:
+    void add(double red, double green, double blue) {
+        found_.push_back({static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)});
+    }
+    /// On a scale to 1, 255 or 65535, whichever is the first that none is beyond, from `leastScale` on. Empty, and the
+    /// reason noted, where they cannot be believed.
+    [[nodiscard]] VertexColours settle(const Source& source, std::size_t vertices, double leastScale) const;
+
+  private:
+    std::vector<std::array<float, 3>> found_;
 };
 
 /// Whitespace-separated words of a text, one after another, never beyond its end.

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "handpiece/base/geometry/mesh_io_formats.h"
+#include "handpiece/base/geometry/mesh_io_obj_texture.h"
 
 namespace handpiece::geometry::formats {
 namespace {
@@ -48,10 +49,62 @@ std::uint32_t formOf(std::string_view corner) {
     return form;
 }
 
+// Behind a vertex's coordinates, red, green and blue, some with how opaque they are. A single number there is a weight.
+void takeColour(std::string_view line, FoundColours& found) {
+    constexpr std::size_t kMost = 4;
+    std::array<double, kMost> numbers;
+    std::size_t count = 0;
+    for (std::string_view word = nextWord(line); !word.empty() && word.front() != '#'; word = nextWord(line)) {
+        if (count == kMost || !parseNumber(word, numbers[count])) return;
+        ++count;
+    }
+    if (count >= 3) found.add(numbers[0], numbers[1], numbers[2]);
+}
+
+core::Vec3 takeVertex(const Source& source, std::string_view& line, std::uint64_t lineNumber) {
+    core::Vec3 v;
+    for (double& x : v) {
+        const std::string_view word = nextWord(line);
+        if (word.empty())
+            source.fail(fmt::format("the vertex in line {} has fewer than three numbers", lineNumber),
+                        "export the mesh again");
+        if (!parseNumber(word, x))
+            source.fail(fmt::format("{} in line {} is not a number", quoted(word), lineNumber),
+                        "export the mesh again");
+    }
+    return v;
+}
+
+// That a face's corner names, of as many as there were so far.
+std::uint32_t vertexAt(const Source& source, std::string_view word, std::size_t vertices, std::uint64_t lineNumber) {
+    std::int64_t number = 0;
+    if (!parseInteger(word.substr(0, word.find('/')), number) || number == 0)
+        source.fail(fmt::format("{} in line {} is no corner of a face", quoted(word), lineNumber),
+                    "export the mesh again");
+    // Counted from 1, or backwards from the latest vertex; a later vertex may be named before it comes.
+    const std::int64_t index = number > 0 ? number - 1 : number + static_cast<std::int64_t>(vertices);
+    if (index < 0 || index >= std::numeric_limits<std::uint32_t>::max())
+        source.fail(fmt::format("the face in line {} names vertex {}, which is not there", lineNumber, number),
+                    "export the mesh again");
+    return static_cast<std::uint32_t>(index);
+}
+
+void tellLeftOut(const Source& source, std::uint64_t lines, std::uint64_t curved) {
+    if (lines > 0)
+        source.note(fmt::format("{} of points or lines {} left out: they are no surface",
+                                lines == 1 ? "an element" : fmt::format("{} elements", lines),
+                                lines == 1 ? "is" : "are"));
+    if (curved > 0)
+        source.note(fmt::format("{} {} left out: export it as triangles", curved,
+                                curved == 1 ? "free-form curve or surface is" : "free-form curves or surfaces are"));
+}
+
 }  // namespace
 
-TriangleMesh readObj(const Source& source) {
+TriangleMesh readObj(const Source& source, VertexColours* colours) {
     TriangleMesh mesh;
+    FoundColours found;
+    ObjTexture texture;
     BadCoordinates bad;
     const std::string_view text = source.text();
     std::string storage;
@@ -72,38 +125,21 @@ TriangleMesh readObj(const Source& source) {
         endsWithFace = key == "f";
         if (key == "v") {
             if (isCut) failCut();  // what would follow it is missing, if not its digits
-            core::Vec3 v;
-            for (double& x : v) {
-                const std::string_view word = nextWord(line);
-                if (word.empty())
-                    source.fail(fmt::format("the vertex in line {} has fewer than three numbers", lineNumber),
-                                "export the mesh again");
-                if (!parseNumber(word, x))
-                    source.fail(fmt::format("{} in line {} is not a number", quoted(word), lineNumber),
-                                "export the mesh again");
-            }
+            const core::Vec3 v = takeVertex(source, line, lineNumber);
             if (!isCoordinate(v.x()) || !isCoordinate(v.y()) || !isCoordinate(v.z())) bad.add(mesh.vertices.size());
             mesh.vertices.push_back(v);
+            if (colours != nullptr) takeColour(line, found);
         } else if (key == "f") {
             corners.clear();
             for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
                 if (word.front() == '#') break;
-                std::int64_t number = 0;
-                if (!parseInteger(word.substr(0, word.find('/')), number) || number == 0)
-                    source.fail(fmt::format("{} in line {} is no corner of a face", quoted(word), lineNumber),
-                                "export the mesh again");
-                // Counted from 1, or backwards from the latest vertex; a later vertex may be named before it comes.
-                const std::int64_t index =
-                    number > 0 ? number - 1 : number + static_cast<std::int64_t>(mesh.vertices.size());
-                if (index < 0 || index >= std::numeric_limits<std::uint32_t>::max())
-                    source.fail(
-                        fmt::format("the face in line {} names vertex {}, which is not there", lineNumber, number),
-                        "export the mesh again");
-                if (static_cast<std::uint64_t>(index) >= highest) {
-                    highest = static_cast<std::uint64_t>(index) + 1;
+                const std::uint32_t index = vertexAt(source, word, mesh.vertices.size(), lineNumber);
+                if (index >= highest) {
+                    highest = std::uint64_t{index} + 1;
                     highestLine = lineNumber;
                 }
-                corners.push_back(static_cast<std::uint32_t>(index));
+                corners.push_back(index);
+                if (colours != nullptr) texture.corner(word, index, mesh.vertices.size());
                 isAnotherForm = mesh.triangles.size() > 0 && formOf(word) != form;
                 form = formOf(word);
             }
@@ -118,22 +154,24 @@ TriangleMesh readObj(const Source& source) {
             ++lines;
         } else if (key == "curv" || key == "curv2" || key == "surf") {
             ++curved;
+        } else if (colours != nullptr) {
+            if (key == "vt") texture.place(line);
+            if (key == "usemtl") texture.material(line);
+            if (key == "mtllib") texture.library(line);
         }
-        // Everything else (normals, texture, groups, materials, comments) says nothing about the surface.
+        // Everything else (normals, groups, comments) says nothing about the surface.
     }
     if (highest > mesh.vertices.size())
         source.fail(
             fmt::format("the face in line {} names vertex {} of {}", highestLine, highest, mesh.vertices.size()),
             "export the mesh again");
     bad.check(source, "vertices", "vertex");
+    if (colours != nullptr) {
+        *colours = found.settle(source, mesh.vertices.size(), 1.0);
+        if (colours->empty()) *colours = texture.colours(source, mesh.vertices.size());
+    }
     settle(polygons, mesh, source);
-    if (lines > 0)
-        source.note(fmt::format("{} of points or lines {} left out: they are no surface",
-                                lines == 1 ? "an element" : fmt::format("{} elements", lines),
-                                lines == 1 ? "is" : "are"));
-    if (curved > 0)
-        source.note(fmt::format("{} {} left out: export it as triangles", curved,
-                                curved == 1 ? "free-form curve or surface is" : "free-form curves or surfaces are"));
+    tellLeftOut(source, lines, curved);
     std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
     for (const Triangle& t : mesh.triangles)
         for (const std::uint32_t v : t)

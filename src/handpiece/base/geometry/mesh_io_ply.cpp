@@ -151,7 +151,8 @@ class Body {
 
 class Reader {
   public:
-    explicit Reader(const Source& source) : source_(source), header_(readHeader(source)), body_(source, header_) {}
+    Reader(const Source& source, VertexColours* colours)
+        : source_(source), header_(readHeader(source)), body_(source, header_), colours_(colours) {}
 
     TriangleMesh read() {
         for (const Element& element : header_.elements) {
@@ -166,6 +167,7 @@ class Reader {
                         readProperty(element, i, p, [](double) {});
         }
         bad_.check(source_, "vertices", "vertex");
+        if (colours_ != nullptr) *colours_ = found_.settle(source_, mesh_.vertices.size(), leastScale_);
         if (highest_ > mesh_.vertices.size())
             source_.fail(
                 fmt::format("face {} names vertex {} of {}", highestFace_ + 1, highest_, mesh_.vertices.size()),
@@ -214,8 +216,32 @@ class Reader {
         items.reserve(std::min<std::uint64_t>(promised, fileBytes / 4));
     }
 
+    /// Which properties are red, green and blue; -1 each unless all three are there and of one type.
+    [[nodiscard]] std::array<std::ptrdiff_t, 3> channelsOf(const Element& element) {
+        constexpr std::array<std::array<std::string_view, 3>, 2> kNames{
+            {{"red", "green", "blue"}, {"diffuse_red", "diffuse_green", "diffuse_blue"}}};
+        for (const auto& names : kNames) {
+            std::array<std::ptrdiff_t, 3> channel{-1, -1, -1};
+            for (std::size_t k = 0; k < element.properties.size(); ++k)
+                for (std::size_t c = 0; c < 3; ++c)
+                    if (!element.properties[k].countType && element.properties[k].name == names[c])
+                        channel[c] = static_cast<std::ptrdiff_t>(k);
+            if (channel[0] < 0 || channel[1] < 0 || channel[2] < 0) continue;
+            const auto typeOf = [&](std::size_t c) {
+                return element.properties[static_cast<std::size_t>(channel[c])].type;
+            };
+            if (typeOf(0) != typeOf(1) || typeOf(0) != typeOf(2)) continue;
+            // A whole 1 is nearly black, and a fraction of 1 is white.
+            const bool isWhole = typeOf(0) != Type::float32 && typeOf(0) != Type::float64;
+            leastScale_ = isWhole ? 255.0 : 1.0;
+            return channel;
+        }
+        return {-1, -1, -1};
+    }
+
     void readVertices(const Element& element) {
-        std::array<std::ptrdiff_t, 3> axis{-1, -1, -1};
+        std::array<std::ptrdiff_t, 3> axis{-1, -1, -1}, channel{-1, -1, -1};
+        if (colours_ != nullptr) channel = channelsOf(element);
         for (std::size_t k = 0; k < element.properties.size(); ++k) {
             const Property& p = element.properties[k];
             if (!p.countType && p.name.size() == 1 && p.name[0] >= 'x' && p.name[0] <= 'z')
@@ -227,12 +253,15 @@ class Reader {
             source_.fail(fmt::format("{} vertices are more than are read", element.count));
         reserve(mesh_.vertices, element.count, source_.data.size());
         for (std::uint64_t i = 0; i < element.count; ++i) {
-            core::Vec3 v = core::Vec3::Zero();
+            core::Vec3 v = core::Vec3::Zero(), colour = core::Vec3::Zero();
             for (std::size_t k = 0; k < element.properties.size(); ++k)
                 readProperty(element, i, element.properties[k], [&](double value) {
-                    for (int a = 0; a < 3; ++a)
+                    for (int a = 0; a < 3; ++a) {
                         if (axis[static_cast<std::size_t>(a)] == static_cast<std::ptrdiff_t>(k)) v[a] = value;
+                        if (channel[static_cast<std::size_t>(a)] == static_cast<std::ptrdiff_t>(k)) colour[a] = value;
+                    }
                 });
+            if (channel[0] >= 0) found_.add(colour.x(), colour.y(), colour.z());
             if (!isCoordinate(v.x()) || !isCoordinate(v.y()) || !isCoordinate(v.z())) bad_.add(mesh_.vertices.size());
             mesh_.vertices.push_back(v);
         }
@@ -277,13 +306,16 @@ class Reader {
     TriangleMesh mesh_;
     Polygons polygons_;
     BadCoordinates bad_;
+    VertexColours* colours_;
+    FoundColours found_;
+    double leastScale_ = 1.0;
     std::uint64_t highest_ = 0, highestFace_ = 0, noFaces_ = 0;
 };
 
 }  // namespace
 
-TriangleMesh readPly(const Source& source) {
-    return Reader(source).read();
+TriangleMesh readPly(const Source& source, VertexColours* colours) {
+    return Reader(source, colours).read();
 }
 
 }  // namespace handpiece::geometry::formats

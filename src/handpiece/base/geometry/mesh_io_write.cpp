@@ -53,34 +53,43 @@ void writeStl(const std::filesystem::path& path, const TriangleMesh& mesh) {
     core::writeFile(path, stlBytes(mesh, path.string()));
 }
 
-void writePly(const std::filesystem::path& path, const TriangleMesh& mesh) {
-    requireValidIndices(mesh, path.string());
+std::vector<std::byte> plyBytes(const TriangleMesh& mesh, const VertexColours& colours, const std::string& where) {
+    requireValidIndices(mesh, where);
+    requireOneAVertex(mesh, colours, where);
     const std::string header = fmt::format(
         "ply\nformat binary_little_endian 1.0\ncomment millimetres, written by handpiece\nelement vertex {}\n"
-        "property double x\nproperty double y\nproperty double z\nelement face {}\nproperty list uchar uint "
+        "property double x\nproperty double y\nproperty double z\n{}element face {}\nproperty list uchar uint "
         "vertex_indices\n"
         "end_header\n",
-        mesh.vertices.size(), mesh.triangles.size());
-    std::vector<std::byte> data(header.size() + 24 * mesh.vertices.size() + 13 * mesh.triangles.size());
+        mesh.vertices.size(), colours.empty() ? "" : "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+        mesh.triangles.size());
+    const std::size_t vertexBytes = colours.empty() ? 24 : 27;
+    std::vector<std::byte> data(header.size() + vertexBytes * mesh.vertices.size() + 13 * mesh.triangles.size());
     std::memcpy(data.data(), header.data(), header.size());
     std::byte* at = data.data() + header.size();
-    for (const core::Vec3& v : mesh.vertices)
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
         for (int k = 0; k < 3; ++k)
-            at = put(at, v[k]);
+            at = put(at, mesh.vertices[v][k]);
+        if (!colours.empty()) at = put(at, colours[v]);
+    }
     for (const Triangle& t : mesh.triangles) {
         at = put(at, std::uint8_t{3});
         for (const std::uint32_t v : t)
             at = put(at, v);
     }
-    core::writeFile(path, data);
+    return data;
 }
 
-void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh) {
+void writePly(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexColours& colours) {
+    core::writeFile(path, plyBytes(mesh, colours, path.string()));
+}
+
+void writeMesh(const std::filesystem::path& path, const TriangleMesh& mesh, const VertexColours& colours) {
     switch (meshFormatOf(path)) {
         case MeshFormat::stl:
             return writeStl(path, mesh);
         case MeshFormat::ply:
-            return writePly(path, mesh);
+            return writePly(path, mesh, colours);
         default:
             throw core::Error("meshes are written as .stl or .ply", path.string(), "name the output so");
     }

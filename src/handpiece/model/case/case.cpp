@@ -155,16 +155,20 @@ std::vector<PlacedTooth> readOthers(const Table& root, const Reading& reading) {
 
 /// All meshes of a case side by side: `names` as Reading::meshes. Of several that cannot be read the first is told.
 void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, Case& made) {
-    std::vector<geometry::TriangleMesh*> meshes;
-    const auto addParts = [&meshes](std::vector<Part>& parts) {
-        for (Part& part : parts)
-            meshes.push_back(&part.mesh);
+    struct Place {
+        geometry::TriangleMesh* mesh;
+        geometry::VertexColours* colours;
     };
-    meshes.push_back(&made.outer);
+    std::vector<Place> places;
+    const auto addParts = [&places](std::vector<Part>& parts) {
+        for (Part& part : parts)
+            places.push_back({&part.mesh, &part.colours});
+    };
+    places.push_back({&made.outer, &made.outerColours});
     addParts(made.parts);
     addParts(made.scenery);
     for (PlacedTooth& other : made.others) {
-        meshes.push_back(&other.outer);
+        places.push_back({&other.outer, &other.outerColours});
         addParts(other.parts);
     }
     std::vector<std::exception_ptr> failures(names.size());
@@ -173,8 +177,11 @@ void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, C
         for (std::size_t i = from; i < to; ++i) {
             if (names[i].empty()) continue;
             try {
-                *meshes[i] = geometry::readMesh(files.read(names[i], geometry::kMaxMeshBytes),
-                                                geometry::meshFormatOf(names[i]), files.where(names[i]), &notes[i]);
+                geometry::ColouredMesh read =
+                    geometry::readColouredMesh(files.read(names[i], geometry::kMaxMeshBytes),
+                                               geometry::meshFormatOf(names[i]), files.where(names[i]), &notes[i]);
+                *places[i].mesh = std::move(read.mesh);
+                *places[i].colours = std::move(read.colours);
             } catch (const core::Error&) {
                 failures[i] = std::current_exception();
             }
@@ -292,7 +299,9 @@ Case readCase(const fs::path& path) {
     Case made;
     made.source = path;
     made.name = path.stem().string();
-    made.outer = geometry::readMesh(path);
+    geometry::ColouredMesh read = geometry::readColouredMesh(path);
+    made.outer = std::move(read.mesh);
+    made.outerColours = std::move(read.colours);
     return made;
 }
 
@@ -300,9 +309,17 @@ std::vector<Part> surroundings(const Case& toothCase) {
     std::vector<Part> all;
     for (const PlacedTooth& other : toothCase.others)
         all.push_back({other.name, Tissue::neighbour, properties(Tissue::neighbour).priority,
-                       geometry::transformed(other.surface(), other.inCase), true});
+                       geometry::transformed(other.surface(), other.inCase), true, other.surfaceColours()});
     all.insert(all.end(), toothCase.scenery.begin(), toothCase.scenery.end());
     return all;
+}
+
+bool isScannedInColour(const Case& toothCase) {
+    return !toothCase.surfaceColours().empty() ||
+           std::any_of(toothCase.others.begin(), toothCase.others.end(),
+                       [](const PlacedTooth& other) { return !other.surfaceColours().empty(); }) ||
+           std::any_of(toothCase.scenery.begin(), toothCase.scenery.end(),
+                       [](const Part& part) { return !part.colours.empty(); });
 }
 
 std::uint64_t contentKey(const Tooth& tooth) {

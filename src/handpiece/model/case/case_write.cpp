@@ -25,23 +25,33 @@ std::vector<std::byte> bytesOf(std::string_view text) {
     return {bytes.begin(), bytes.end()};
 }
 
+/// An STL holds no colours. Programs before them read a PLY as well, without its colours.
+const char* endingOf(const geometry::VertexColours& colours) {
+    return colours.empty() ? ".stl" : ".ply";
+}
+
 /// Names become file names: nothing but letters, digits and dashes, and no two alike.
 std::string fileFor(const Part& part, std::string_view prefix, const PackageFiles& taken) {
     constexpr std::size_t kLongest = 100;
     std::string base(prefix);
     for (const char c : part.name.substr(0, kLongest))
         base += (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ? c : '-';
-    std::string file = base + ".stl";
+    std::string file = base + endingOf(part.colours);
     for (int i = 2; taken.count(file) > 0; ++i)
-        file = fmt::format("{}-{}.stl", base, i);
+        file = fmt::format("{}-{}{}", base, i, endingOf(part.colours));
     return file;
+}
+
+std::vector<std::byte> bytesOf(const geometry::TriangleMesh& mesh, const geometry::VertexColours& colours,
+                               const std::string& where) {
+    return colours.empty() ? geometry::stlBytes(mesh, where) : geometry::plyBytes(mesh, colours, where);
 }
 
 void addParts(const std::vector<Part>& parts, const std::string& key, std::string_view prefix, PackageFiles& files,
               std::string& toml) {
     for (const Part& part : parts) {
         const std::string file = fileFor(part, prefix, files);
-        files[file] = geometry::stlBytes(part.mesh, part.name);
+        files[file] = bytesOf(part.mesh, part.colours, part.name);
         toml += fmt::format("\n[[{}]]\nname = {}\nfile = {}\ntissue = {}\npriority = {}\n", key, tomlText(part.name),
                             tomlText(file), tomlText(properties(part.tissue).name), part.priority);
         if (part.isFelt) toml += "felt = true\n";
@@ -49,13 +59,14 @@ void addParts(const std::vector<Part>& parts, const std::string& key, std::strin
 }
 
 /// Name, kind, number and surface: the keys of a tooth before its tables.
-std::string toothKeys(const Tooth& tooth, const std::string& outerFile, PackageFiles& files) {
+std::string toothKeys(const Tooth& tooth, std::string_view prefix, PackageFiles& files) {
     std::string toml = fmt::format("name = {}\n", tomlText(tooth.name));
     if (!tooth.kind.empty()) toml += fmt::format("kind = {}\n", tomlText(tooth.kind));
     if (tooth.fdiNumber != 0) toml += fmt::format("fdi = {}\n", tooth.fdiNumber);
     if (tooth.buccalSign != 0) toml += fmt::format("buccal = \"{}\"\n", tooth.buccalSign > 0 ? "+y" : "-y");
     if (tooth.outer.triangles.empty()) return toml;
-    files[outerFile] = geometry::stlBytes(tooth.outer, outerFile);
+    const std::string outerFile = fmt::format("{}outer{}", prefix, endingOf(tooth.outerColours));
+    files[outerFile] = bytesOf(tooth.outer, tooth.outerColours, outerFile);
     return toml + fmt::format("outer = \"{}\"\n", outerFile);
 }
 
@@ -74,7 +85,7 @@ bool isClosed(const Case& c) {
 void addOther(const PlacedTooth& tooth, std::size_t index, PackageFiles& files, std::string& toml) {
     const std::string prefix =
         tooth.fdiNumber != 0 ? fmt::format("{}-", tooth.fdiNumber) : fmt::format("tooth{}-", index + 1);
-    toml += "\n[[tooth]]\n" + toothKeys(tooth, prefix + "outer.stl", files);
+    toml += "\n[[tooth]]\n" + toothKeys(tooth, prefix, files);
     toml += poseToml(tooth.inCase) + fmt::format("cuttable = {}\n", tooth.isCuttable);
     addParts(tooth.parts, "tooth.part", prefix, files, toml);
     toml += landmarksToml(tooth.landmarks, "tooth.landmark");
@@ -94,7 +105,7 @@ int formatOf(const Case& c) {
 PackageFiles caseFiles(const Case& toothCase) {
     std::string toml = "# A Handpiece case: docs/case-format.md. Millimetres; +z occlusal, +x mesial.\n";
     PackageFiles files;
-    toml += fmt::format("format = {}\n", formatOf(toothCase)) + toothKeys(toothCase, "outer.stl", files);
+    toml += fmt::format("format = {}\n", formatOf(toothCase)) + toothKeys(toothCase, "", files);
     if (!toothCase.tissuesToml.empty()) {
         files[kTissueFile] = bytesOf(toothCase.tissuesToml);
         toml += fmt::format("tissues = \"{}\"\n", kTissueFile);

@@ -121,7 +121,10 @@ void addLesions(cases::Tooth& tooth, std::span<const Lesion> lesions, const Opti
     }
     geometry::TriangleMesh outer;
     if (!deposits.empty()) outer = thickened(surfaces, tooth, deposits, {});
-    if (!deposits.empty()) tooth.outer = std::move(outer);
+    if (!deposits.empty()) {
+        tooth.outerColours = geometry::coloursFrom(tooth.surface(), tooth.surfaceColours(), outer);
+        tooth.outer = std::move(outer);
+    }
     std::move(added.begin(), added.end(), std::back_inserter(tooth.parts));
     core::report(progress, 1.0);
 }

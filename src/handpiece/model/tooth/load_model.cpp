@@ -110,6 +110,8 @@ class Loader {
     [[nodiscard]] ToothModel model(field::DistanceField field) && {
         ToothModel made{case_.name, outer_, std::move(*tree_), std::move(field)};
         made.fromCache = fromCache_;
+        geometry::requireOneAVertex(outer_, case_.surfaceColours(), case_.name);
+        made.colours = case_.surfaceColours();
         return made;
     }
 

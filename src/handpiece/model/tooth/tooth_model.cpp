@@ -124,6 +124,7 @@ std::shared_ptr<const ToothModel> withTissues(const ToothModel& model, field::Ti
                                               const CutSettings& settings) {
     ToothModel copy{model.name, model.outer, model.tree, model.field};
     copy.fieldHash = model.fieldHash;
+    copy.colours = model.colours;
     return withTissues(std::move(copy), std::move(tissues), settings);
 }
 

@@ -11,6 +11,7 @@
 #include "handpiece/base/core/realtime.h"
 #include "handpiece/base/geometry/triangle_mesh.h"
 #include "handpiece/base/geometry/triangle_tree.h"
+#include "handpiece/base/geometry/vertex_colours.h"
 #include "handpiece/model/case/case.h"
 #include "handpiece/model/field/distance_field.h"
 #include "handpiece/model/field/tissue_map.h"
@@ -37,7 +38,8 @@ struct ToothModel {
     std::uint64_t fieldHash = 0;  ///< of the field as it was built, with the tissues that its file keeps
     std::uint64_t identity = 0;   ///< two models share it only when a state of one is a state of the other
     bool fromCache = false;
-    double buildSeconds = 0.0;  ///< that loadModel took, built or reopened
+    double buildSeconds = 0.0;          ///< that loadModel took, built or reopened
+    geometry::VertexColours colours{};  ///< of `outer` as a scanner saw it; empty: not known
 
     /// kBrickValues values of a brick before any cut. The same bits whoever asks.
     void uncutBrick(std::uint32_t dense, float* out) const noexcept HANDPIECE_REALTIME;

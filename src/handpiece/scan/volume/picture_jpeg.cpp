@@ -101,6 +101,35 @@ const char* decode(jpeg_decompress_struct& state, Problem& problem, const std::v
     return warnings > 0 ? "its pixel data is truncated or damaged" : nullptr;
 }
 
+/// Red, green and blue into `to`; returns what is wrong, or null.
+const char* decodeColours(jpeg_decompress_struct& state, Problem& problem, const std::vector<std::byte>& data,
+                          const Lies& lies, std::uint8_t* to) {
+    state.err = quiet(problem);
+    if (setjmp(problem.out) != 0) {
+        jpeg_destroy_decompress(&state);
+        return problem.text;
+    }
+    jpeg_create_decompress(&state);
+    jpeg_mem_src(&state, reinterpret_cast<const unsigned char*>(data.data()), static_cast<unsigned long>(data.size()));
+    jpeg_read_header(&state, TRUE);
+    const bool isSame =
+        static_cast<int>(state.image_width) == lies.columns && static_cast<int>(state.image_height) == lies.rows;
+    if (!isSame || isInks(state)) {
+        jpeg_destroy_decompress(&state);
+        return isSame ? "it is made of inks" : "its size changed";
+    }
+    state.out_color_space = JCS_RGB;
+    state.dct_method = JDCT_ISLOW;
+    jpeg_start_decompress(&state);
+    while (state.output_scanline < state.output_height) {
+        JSAMPROW rows[1] = {to + 3 * static_cast<std::size_t>(state.output_scanline) * state.output_width};
+        if (jpeg_read_scanlines(&state, rows, 1) != 1) break;
+    }
+    const long warnings = state.err->num_warnings;
+    jpeg_destroy_decompress(&state);
+    return warnings > 0 ? "its pixel data is truncated or damaged" : nullptr;
+}
+
 const char* encode(jpeg_compress_struct& state, Problem& problem, const std::uint8_t* grey, int columns, int rows,
                    unsigned char** data, unsigned long* size) {
     state.err = quiet(problem);
@@ -165,6 +194,15 @@ void readJpeg(Input& input, const PictureInfo& info, float* to) {
     Problem problem{};
     if (const char* why = decode(state, problem, data, lies, line.data(), into)) throw damagedPicture(input, why);
     if (!turned.empty()) orientation.turn(turned.data(), lies.columns, lies.rows, to);
+}
+
+void readJpegColours(Input& input, const AllocateColours& allocate) {
+    const std::vector<std::byte> data = wholeOf(input);
+    const Lies lies = liesIn(input, data);
+    std::uint8_t* const to = allocate(lies.columns, lies.rows);
+    jpeg_decompress_struct state{};
+    Problem problem{};
+    if (const char* why = decodeColours(state, problem, data, lies, to)) throw damagedPicture(input, why);
 }
 
 std::vector<std::byte> jpegBytes(std::span<const std::uint8_t> grey, int columns, int rows) {

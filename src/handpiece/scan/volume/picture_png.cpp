@@ -40,8 +40,10 @@ void writeSome(png_structp png, png_bytep from, std::size_t count) {
 }
 void flushNothing(png_structp /*png*/) {}
 
-/// Header alone without `rows`; else all pixels as 16-bit or 8-bit grey in the machine's order.
-bool decode(Stream& stream, png_structp& png, png_infop& head, PictureInfo& info, png_bytepp rows) {
+enum class As { grey, colours };
+
+/// Header alone without `rows`; else all pixels as 16-bit or 8-bit grey in the machine's order, or as red, green, blue.
+bool decode(Stream& stream, png_structp& png, png_infop& head, PictureInfo& info, png_bytepp rows, As as = As::grey) {
     if (setjmp(stream.jump) != 0) return false;
     png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &stream, onError, onWarning);
     head = png ? png_create_info_struct(png) : nullptr;
@@ -67,11 +69,16 @@ bool decode(Stream& stream, png_structp& png, png_infop& head, PictureInfo& info
     if (type == PNG_COLOR_TYPE_PALETTE) png_set_palette_to_rgb(png);
     if (type == PNG_COLOR_TYPE_GRAY && depth < 8) png_set_expand_gray_1_2_4_to_8(png);
     if ((type & PNG_COLOR_MASK_ALPHA) != 0 || png_get_valid(png, head, PNG_INFO_tRNS) != 0) png_set_strip_alpha(png);
-    if ((type & PNG_COLOR_MASK_COLOR) != 0) png_set_rgb_to_gray(png, PNG_ERROR_ACTION_NONE, -1.0, -1.0);
-    if (depth == 16 && std::endian::native == std::endian::little) png_set_swap(png);
+    if (as == As::colours) {
+        png_set_scale_16(png);
+        png_set_gray_to_rgb(png);
+    } else if ((type & PNG_COLOR_MASK_COLOR) != 0) {
+        png_set_rgb_to_gray(png, PNG_ERROR_ACTION_NONE, -1.0, -1.0);
+    }
+    if (as == As::grey && depth == 16 && std::endian::native == std::endian::little) png_set_swap(png);
     png_set_interlace_handling(png);
     png_read_update_info(png, head);
-    const std::size_t needed = static_cast<std::size_t>(columns) * (depth == 16 ? 2 : 1);
+    const std::size_t needed = static_cast<std::size_t>(columns) * (as == As::colours ? 3 : depth == 16 ? 2 : 1);
     if (png_get_rowbytes(png, head) != needed) png_error(png, "its pixels are of a kind that is not read");
     png_read_image(png, rows);
     png_read_end(png, nullptr);
@@ -139,6 +146,23 @@ void readPng(Input& input, const PictureInfo& info, float* to) {
         if (each == 2) std::memcpy(&wide, pixels.data() + 2 * i, 2);
         to[i] = static_cast<float>(each == 2 ? wide : pixels[i]);
     }
+}
+
+void readPngColours(Input& input, const AllocateColours& allocate) {
+    const std::vector<std::byte> data = wholeOf(input);
+    PictureInfo info = infoOf(input, data);
+    std::uint8_t* const to = allocate(info.columns, info.rows);
+    std::vector<png_bytep> rows(static_cast<std::size_t>(info.rows));
+    for (std::size_t y = 0; y < rows.size(); ++y)
+        rows[y] = to + 3 * y * static_cast<std::size_t>(info.columns);
+    Stream stream;
+    stream.data = data.data();
+    stream.size = data.size();
+    png_structp png = nullptr;
+    png_infop head = nullptr;
+    const bool good = decode(stream, png, head, info, rows.data(), As::colours);
+    png_destroy_read_struct(&png, &head, nullptr);
+    if (!good) throw damagedPicture(input, stream.text);
 }
 
 namespace {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,12 @@ void readPng(Input& input, const PictureInfo& info, float* to);
 /// Pages first .. first + count - 1, one after another.
 void readTiff(Input& input, const PictureInfo& info, int first, int count, const SlicePlace& place,
               const core::Progress& progress);
+
+/// All of a picture in colour, three bytes a pixel, as it lies in the file: into what `allocate` gives for its size,
+/// which may throw. Throws core::Error for damage.
+using AllocateColours = std::function<std::uint8_t*(int columns, int rows)>;
+void readJpegColours(Input& input, const AllocateColours& allocate);
+void readPngColours(Input& input, const AllocateColours& allocate);
 
 /// Grey values as a file: 8 bit, or 16 where the format has them (PNG, TIFF).
 [[nodiscard]] std::vector<std::byte> bmpBytes(std::span<const std::uint8_t> grey, int columns, int rows);

@@ -76,7 +76,8 @@ struct Look {
     std::optional<Plane> cutAway;  ///< applies to tooth and scenery, not to bur and turbine
     bool sectionGrid = false;      ///< millimetre lines on the cut-away's face
     bool bur = true, turbine = true;
-    bool cheeks = false;  ///< lips and cheeks: else they are held aside
+    bool cheeks = false;      ///< lips and cheeks: else they are held aside
+    bool scanColours = true;  ///< those of an intraoral scan where there are any; with Palette::natural alone
     bool wet = true, debris = true, spray = true, shadows = true;
     bool contactArrow = false, forceArrow = false;
     /// Where gingiva bleeds: it is red about these places. The first kMostBleeding count.

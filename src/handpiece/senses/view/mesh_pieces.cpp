@@ -121,21 +121,23 @@ std::vector<float> underMarginMm(const geometry::TriangleMesh& gingiva) {
     return under;
 }
 
-MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm) {
+MeshPiece pieceOf(const surface::BrickMesh& mesh, const std::vector<float>* removedDepthMm,
+                  const std::vector<surface::ScanColour>* scanned) {
     MeshPiece piece;
     piece.triangles = mesh.triangles;
     piece.vertices.reserve(mesh.vertices.size());
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
         const surface::SurfaceVertex& v = mesh.vertices[i];
         const float removed = removedDepthMm != nullptr && i < removedDepthMm->size() ? (*removedDepthMm)[i] : 0.0f;
-        piece.vertices.push_back(
-            {v.positionMm, packedNormal(v.normal), static_cast<std::uint8_t>(v.tissue), 0, micrometres(removed)});
+        piece.vertices.push_back({v.positionMm, packedNormal(v.normal), static_cast<std::uint8_t>(v.tissue), 0,
+                                  micrometres(removed),
+                                  scanned != nullptr && i < scanned->size() ? (*scanned)[i] : surface::ScanColour{}});
     }
     return piece;
 }
 
 std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissue tissue, double creaseRad,
-                                double cellMm) {
+                                double cellMm, const geometry::VertexColours& colours) {
     const Fans fans = fansOf(mesh);
     const std::vector<float> under = tissue == cases::Tissue::gum ? underMarginMm(mesh) : std::vector<float>();
     std::vector<Vec3> faceNormals;  // as long as twice the area: large faces count for more
@@ -151,6 +153,10 @@ std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissu
     std::map<std::array<int, 3>, Building> cells;
     std::vector<MeshPiece> done;
     const double crease = std::cos(creaseRad);
+    const auto scannedAt = [&](std::uint32_t v) {
+        return v < colours.size() ? surface::ScanColour{colours[v][0], colours[v][1], colours[v][2], 255}
+                                  : surface::ScanColour{};
+    };
     for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
         const geometry::Triangle& t = mesh.triangles[i];
         std::array<int, 3> key{};
@@ -176,7 +182,7 @@ std::vector<MeshPiece> piecesOf(const geometry::TriangleMesh& mesh, cases::Tissu
                 cell.known.try_emplace(identity, static_cast<std::uint16_t>(cell.piece.vertices.size()));
             if (isNew)
                 cell.piece.vertices.push_back({floats(mesh.vertices[v]), packed, static_cast<std::uint8_t>(tissue), 0,
-                                               micrometres(under.empty() ? 0.0f : under[v])});
+                                               micrometres(under.empty() ? 0.0f : under[v]), scannedAt(v)});
             corners[k] = it->second;
         }
         cell.piece.triangles.push_back(corners);

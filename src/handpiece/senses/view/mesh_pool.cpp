@@ -95,7 +95,8 @@ MeshPool::MeshPool() {
                   {{0, 3, GL_FLOAT, false, offsetof(GpuVertex, positionMm)},
                    {1, 4, GL_INT_2_10_10_10_REV, true, offsetof(GpuVertex, normal)},
                    {2, 1, GL_UNSIGNED_BYTE, false, offsetof(GpuVertex, tissue), true},
-                   {3, 1, GL_UNSIGNED_SHORT, true, offsetof(GpuVertex, removedUm)}});
+                   {3, 1, GL_UNSIGNED_SHORT, true, offsetof(GpuVertex, removedUm)},
+                   {4, 4, GL_UNSIGNED_BYTE, true, offsetof(GpuVertex, scanned)}});
     array_.attachIndices(indices_);
 }
 

@@ -15,15 +15,16 @@
 
 namespace handpiece::view {
 
-/// As the graphics card has it: 20 bytes.
+/// As the graphics card has it: 24 bytes.
 struct GpuVertex {
     std::array<float, 3> positionMm;
     std::uint32_t normal;  ///< 10 bits each
     std::uint8_t tissue;
     std::uint8_t unused;
     std::uint16_t removedUm;
+    std::array<std::uint8_t, 4> scanned{};  ///< surface::ScanColour
 };
-static_assert(sizeof(GpuVertex) == 20);
+static_assert(sizeof(GpuVertex) == 24);
 
 [[nodiscard]] std::uint32_t packedNormal(const std::array<float, 3>& unit);
 

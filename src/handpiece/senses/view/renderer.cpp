@@ -448,9 +448,10 @@ void Renderer::updateBricks(std::span<const surface::BrickUpdate> bricks, bool b
     state_->scene.updateBricks(bricks, before);
 }
 
-void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
+void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue,
+                       const geometry::VertexColours& colours) {
     state_->context.makeCurrent();
-    state_->scene.setMesh(mesh, tissue);
+    state_->scene.setMesh(mesh, tissue, colours);
     state_->instruments.setWork(mesh.bounds());
     state_->glass.set({});
 }

@@ -106,8 +106,8 @@ class Renderer {
     /// New triangles for these bricks. What a brick showed first is kept as "before"; `before` says that these are
     /// that, as after setTooth().
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before = false);
-    /// A tooth that is one mesh and is not cut (an STL to look at); `tissue` colours it.
-    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    /// A tooth that is one mesh and is not cut (an STL to look at); `tissue` colours it, or what a scanner saw.
+    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours = {});
     /// cases::surroundings(): tooth number n is the part n - 1, and drawn no more once bricks of it have come.
     void setScenery(std::span<const cases::Part> parts);
     /// The tissues of the tooth under its surface, uncut: seen where Look::visible leaves out one of them. Forgotten by

@@ -89,7 +89,7 @@ void Scene::setTooth(const core::Box& bounds) {
     slot_.clear();
     sorted_ = true;
     coarseCount_ = cutCount_ = 0;
-    hasBefore_ = false;
+    hasBefore_ = hasScannedBricks_ = false;
     teethInBricks_.clear();
     drop(mesh_);
     drop(parts_);
@@ -126,9 +126,17 @@ void Scene::put(const surface::BrickUpdate& update, bool before) {
         bricks_.back().id = update.id;
     }
     Brick& brick = bricks_[found->second];
-    const PooledMesh now =
-        update.mesh != nullptr ? pool_.add(pieceOf(*update.mesh, update.removedDepthMm.get())) : PooledMesh{};
-    const PooledMesh coarse = update.coarse != nullptr ? pool_.add(pieceOf(*update.coarse, nullptr)) : PooledMesh{};
+    const PooledMesh now = update.mesh != nullptr
+                               ? pool_.add(pieceOf(*update.mesh, update.removedDepthMm.get(), update.colours.get()))
+                               : PooledMesh{};
+    const PooledMesh coarse = update.coarse != nullptr
+                                  ? pool_.add(pieceOf(*update.coarse, nullptr, update.coarseColours.get()))
+                                  : PooledMesh{};
+    const bool isScanned = update.colours != nullptr || update.coarseColours != nullptr;
+    if (isScanned && !hasScannedBricks_) {
+        hasScannedBricks_ = true;
+        changeAll();  // all is drawn in another way from now on
+    }
     const bool hasCoarse = update.coarse != nullptr;
     note(brick.now);
     coarseCount_ -= brick.hasCoarse ? 1 : 0;
@@ -160,7 +168,8 @@ void Scene::put(const surface::BrickUpdate& update, bool before) {
     brick.coarse = coarse;
     brick.hasCoarse = hasCoarse;
     brick.mesh = update.mesh;
-    putInPatch(brick);
+    // Fewer triangles would blur the colours, however near they lie.
+    if (!isScanned) putInPatch(brick);
     note(now);
 }
 
@@ -205,29 +214,34 @@ void Scene::drop(std::vector<Static>& meshes) {
     meshes.clear();
 }
 
-void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue, std::size_t part) {
+void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue,
+                const geometry::VertexColours& colours, std::size_t part) {
     const core::Box box = mesh.bounds();
     if (box.isEmpty()) return;
     // Small pieces: little is drawn beside the bur while a cut redraws its rectangle.
     const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
-    std::vector<MeshPiece> pieces = piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells));
+    std::vector<MeshPiece> pieces =
+        piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells), colours);
     if (tissue == cases::Tissue::neighbour) noteHeights(mesh, box.centre().z() > toothBounds_.max.z(), pieces);
     for (const MeshPiece& piece : pieces)
         to.push_back({tissue, pool_.add(piece), box, part, false});
 }
 
-void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue) {
+void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours) {
     setTooth(mesh.bounds());
-    add(mesh_, mesh, tissue);
+    add(mesh_, mesh, tissue, colours);
+    hasScannedBricks_ = !colours.empty();
     measure();
 }
 
 void Scene::setScenery(std::span<const cases::Part> parts) {
     drop(scenery_);
+    hasScannedScenery_ = false;
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (teethInBricks_.contains(static_cast<std::uint16_t>(i + 1))) continue;
         const std::size_t before = scenery_.size();
-        add(scenery_, parts[i].mesh, parts[i].tissue, i);
+        add(scenery_, parts[i].mesh, parts[i].tissue, parts[i].colours, i);
+        hasScannedScenery_ = hasScannedScenery_ || !parts[i].colours.empty();
         for (std::size_t k = before; k < scenery_.size(); ++k)
             scenery_[k].isHeldAside = cases::isHeldAside(parts[i]);
     }
@@ -238,7 +252,7 @@ void Scene::setScenery(std::span<const cases::Part> parts) {
 void Scene::setParts(std::span<const cases::Part> parts) {
     drop(parts_);
     for (const cases::Part& part : parts)
-        add(parts_, part.mesh, part.tissue);
+        add(parts_, part.mesh, part.tissue, {});
     overDentine_.set(parts);
     changeAll();
 }

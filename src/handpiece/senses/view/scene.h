@@ -29,7 +29,7 @@ class Scene {
   public:
     void setTooth(const core::Box& bounds);
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before);
-    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue);
+    void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours);
     void setScenery(std::span<const cases::Part> parts);
     void setParts(std::span<const cases::Part> parts);
 
@@ -37,6 +37,8 @@ class Scene {
     /// All that may be seen, scenery too.
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
     [[nodiscard]] const OverDentine& overDentine() const noexcept { return overDentine_; }
+    /// Something of it has a scan's colours.
+    [[nodiscard]] bool isScanned() const noexcept { return hasScannedBricks_ || hasScannedScenery_; }
     [[nodiscard]] bool hasCoarse() const noexcept { return coarseCount_ > 0; }
 
     /// How far what Detail::near shows may lie from all triangles [mm].
@@ -100,7 +102,8 @@ class Scene {
     };
     void put(const surface::BrickUpdate& update, bool before);
     void drop(std::vector<Static>& meshes);
-    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue, std::size_t part = 0);
+    void add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cases::Tissue tissue,
+             const geometry::VertexColours& colours, std::size_t part = 0);
     void showTooth(std::uint16_t number);
     void note(const PooledMesh& mesh);
     void putInPatch(Brick& brick);
@@ -119,6 +122,7 @@ class Scene {
     std::vector<std::uint32_t> stale_;                     ///< patches that are to be simplified (again)
     std::size_t coarseCount_ = 0, cutCount_ = 0;
     bool hasBefore_ = false;
+    bool hasScannedBricks_ = false, hasScannedScenery_ = false;
     std::set<std::uint16_t> teethInBricks_;  ///< of those around the one worked on
     std::uint64_t epoch_ = 1;
     std::vector<Change> changes_;

@@ -15,6 +15,10 @@ layout(location = 0) in vec3 position;
 layout(location = 1) in vec4 normal;
 layout(location = 2) in uint tissue;
 layout(location = 3) in float removed;
+#ifdef SCANNED
+layout(location = 4) in vec4 scanned;
+out vec4 scannedOut;
+#endif
 uniform mat4 viewProjection;
 uniform int visibleTissues;
 #ifdef CLIPPED
@@ -36,6 +40,9 @@ void main() {
 #endif
     normalOut = 0.5 * normal.xyz + 0.5;
     removedOut = removed;
+#ifdef SCANNED
+    scannedOut = scanned;
+#endif
     kind = float(tissue);
 }
 )";
@@ -45,10 +52,20 @@ in vec3 normalOut;
 in float removedOut;
 flat in float kind;
 layout(location = 0) out vec4 surface;
+#ifdef SCANNED
+in vec4 scannedOut;
+layout(location = 1) out vec4 scannedHere;
+#endif
 void main() {
     float k = kind;
+#ifdef SCANNED
+    scannedHere = scannedOut;
+#endif
 #ifdef CLIPPED
     if (!gl_FrontFacing) {
+#ifdef SCANNED
+        scannedHere = vec4(0.0);
+#endif
         // What was cut through: scenery is filled with its own colour, a tooth shows its walls.
         if (kind == 6.0 || kind == 7.0 || kind == 8.0) {
             surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + 1.0) / 65535.0);
@@ -256,6 +273,9 @@ uniform int removedColours;
 uniform float removedMost;
 uniform int bleedings;
 uniform vec3 bleeding[24];
+#ifdef SCANNED
+uniform sampler2D scanned;
+#endif
 #ifdef SHADOWS
 uniform sampler2DShadow shadowMap;
 uniform mat4 toShadow;
@@ -398,6 +418,12 @@ void main() {
             gum((code - float(kind) * 2048.0) * 0.01, at, albedo, n, m);
         }
     }
+#ifdef SCANNED
+    // As the scanner saw it: all that was done to the tissue's colour above is in it already. Between a vertex that was
+    // scanned and one that was cut it fades.
+    vec4 seen = texelFetch(scanned, p, 0);
+    if (seen.a > 0.0) albedo = mix(albedo, pow(seen.rgb / seen.a, vec3(2.2)), seen.a);
+#endif
     if (removedColours != 0 && kind != 6 && kind != 7 && kind != 8 && kind != 29)
         albedo = texture(depthScale, vec2((code - float(kind) * 2048.0) * 0.01 / removedMost, 0.5)).rgb;
 
@@ -571,6 +597,15 @@ std::string with(const char* define, const char* text) {
 }
 
 }  // namespace
+
+ScannedShaders::ScannedShaders()
+    : surface("scanned surface", with("SCANNED", kSurfaceVertex), with("SCANNED", kSurfaceFragment)),
+      clippedSurface("clipped scanned surface", with("SCANNED", with("CLIPPED", kSurfaceVertex).c_str()),
+                     with("SCANNED", with("CLIPPED", kSurfaceFragment).c_str())),
+      light("light of a scan", kFullScreenVertex, with("SCANNED", kLightFragment)),
+      fineLight("fine light of a scan", kFullScreenVertex, with("SCANNED", with("FINE", kLightFragment).c_str())),
+      shadowedLight("light of a scan with shadows", kFullScreenVertex,
+                    with("SCANNED", with("FINE", with("SHADOWS", kLightFragment).c_str()).c_str())) {}
 
 Shaders::Shaders()
     : surface("surface", kSurfaceVertex, kSurfaceFragment),

@@ -234,6 +234,17 @@ void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Section& section, 
     glDepthFunc(GL_LESS);
 }
 
+/// Whether a scan's colours are to be seen; then there is room for them.
+bool ToothLayer::drawsScanned(const Scene& scene, const LayerWants& wants) {
+    if (!scene.isScanned() || !wants.look.scanColours || wants.look.palette != Palette::natural) return false;
+    const int w = surface_.width(), h = surface_.height();
+    if (scanned_.width() != w || scanned_.height() != h) {
+        scanned_.allocate(w, h, GL_RGBA8);
+        scannedGeometry_.attach({&surface_, &scanned_}, &depth_);
+    }
+    return true;
+}
+
 std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Section& section, const LayerWants& wants,
                                     const PixelRect& rect) {
     const Look& look = wants.look;
@@ -247,9 +258,12 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
     const Scene::InTheWay out = scene.inTheWay(eyeToSee(wants.eye));
     const Culler culler(wants.eye, wants.viewport, rect, !open && !out.plane);
     const Scene::Visible& visible = scene.visible(look, wants.detail, culler, out);
+    const bool isScanned = drawsScanned(scene, wants);
+    if (isScanned) scannedGeometry_.bind();  // cleared where there is a surface: by what is drawn there
     const auto draw = [&](const std::vector<const PooledMesh*>& meshes, const std::optional<Plane>& end) {
         const bool clipped = look.cutAway || end;
-        gl::Program& program = clipped ? shaders.clippedSurface : shaders.surface;
+        gl::Program& program = isScanned ? (clipped ? shaders.scanned().clippedSurface : shaders.scanned().surface)
+                                         : (clipped ? shaders.clippedSurface : shaders.surface);
         program.use();
         program.set("viewProjection", wants.eye.viewProjection());
         program.set("visibleTissues", visibleBits(look));
@@ -275,6 +289,7 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
     std::size_t triangles = draw(visible.tooth, wants.eye.clip);
     triangles += draw(visible.around, out.plane ? out.plane : wants.eye.clip);
 
+    if (isScanned) geometry_.bind();
     if (wants.sectionSerial != 0 && look.cutAway) {
         const SectionFace& face = section.face;
         gl::Program& cap = shaders.cap;
@@ -431,8 +446,15 @@ void ToothLayer::drawLight(Shaders& shaders, const Scene& scene, const gl::Textu
     setScissor(content);
     const bool shadows = look.quality == Quality::rich && look.shadows;
     const bool isPlain = look.quality == Quality::fast || wants.detail == Detail::coarse;
-    gl::Program& light = shadows ? shaders.shadowedLight : isPlain ? shaders.light : shaders.fineLight;
+    const bool isScanned = drawsScanned(scene, wants);
+    gl::Program& light = isScanned ? (shadows   ? shaders.scanned().shadowedLight
+                                      : isPlain ? shaders.scanned().light
+                                                : shaders.scanned().fineLight)
+                         : shadows ? shaders.shadowedLight
+                         : isPlain ? shaders.light
+                                   : shaders.fineLight;
     light.use();
+    if (isScanned) light.set("scanned", scanned_, 6);
     std::array<Vec3f, kMostBleeding> bleeding;
     const std::size_t bleeds = std::min(look.bleedingMm.size(), bleeding.size());
     for (std::size_t i = 0; i < bleeds; ++i)

@@ -91,8 +91,10 @@ class ToothLayer {
     void drawLight(Shaders& shaders, const Scene& scene, const gl::Texture& depthScale, const LayerWants& wants,
                    const PixelRect& rect, const PixelRect& content);
 
-    gl::Texture surface_, depth_, occlusion_, blurred_, colour_, litDepth_, shadow_;
-    gl::Framebuffer geometry_, occlusionTarget_, blurredTarget_, lit_, both_, shadowTarget_;
+    [[nodiscard]] bool drawsScanned(const Scene& scene, const LayerWants& wants);
+
+    gl::Texture surface_, scanned_, depth_, occlusion_, blurred_, colour_, litDepth_, shadow_;
+    gl::Framebuffer geometry_, scannedGeometry_, occlusionTarget_, blurredTarget_, lit_, both_, shadowTarget_;
     gl::VertexArray none_;  ///< for what needs no vertices
     gl::Mat4f toShadow_ = gl::Mat4f::Identity();
     /// The background by itself: it changes only with its colours.

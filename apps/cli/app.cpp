@@ -17,6 +17,7 @@
 #include "handpiece/base/config/words.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/core/error.h"
+#include "handpiece/base/core/utf8.h"
 #include "handpiece/base/geometry/read_notes.h"
 #include "studies/progress_bar.h"
 
@@ -44,7 +45,8 @@ void tellWhatIsLeftOut(const std::string& program) {
     geometry::listenToNotes([program, told = std::set<std::pair<std::string, std::string>>()](
                                 const std::string& where, const std::string& note) mutable {
         if (told.emplace(where, note).second)
-            std::fprintf(stderr, "%s: note: %s: %s\n", program.c_str(), where.c_str(), note.c_str());
+            std::fprintf(stderr, "%s: note: %s: %s\n", program.c_str(), core::printable(where).c_str(),
+                         core::printable(note).c_str());
     });
 }
 

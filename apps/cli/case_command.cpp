@@ -13,6 +13,7 @@
 #include "cli/inputs.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/utf8.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/model/case/attempt.h"
 #include "handpiece/model/case/case.h"
@@ -108,7 +109,7 @@ Json toJson(const Case& c, const std::string& place) {
 }
 
 void row(std::string_view label, const std::string& value) {
-    fmt::print("  {:<14} {}\n", label, value);
+    fmt::print("  {:<14} {}\n", label, core::printable(value));
 }
 
 const char* coloursNote(const geometry::VertexColours& colours) {
@@ -201,7 +202,8 @@ void check(const std::string& place, bool json) {
         print({{"case", place}, {"usable", !wrong}, {"findings", std::move(list)}});
     } else {
         for (const cases::CaseFinding& f : findings)
-            fmt::print("  {:<7} {}{}{}\n", f.isError ? "error" : "note", f.part.empty() ? "" : f.part + ": ", f.what,
+            fmt::print("  {:<7} {}{}{}\n", f.isError ? "error" : "note",
+                       f.part.empty() ? "" : core::printable(f.part) + ": ", core::printable(f.what),
                        f.remedy.empty() ? "" : fmt::format(" ({})", f.remedy));
         if (!wrong) fmt::print("{}: can be felt and cut\n", place);
     }
@@ -340,8 +342,8 @@ void listLandmarks(const LandmarkOptions& o) {
         const std::string place = mark.pointsMm.size() == 1
                                       ? fmt::format("{:7.2f} {:7.2f} {:7.2f} mm", p.x(), p.y(), p.z())
                                       : fmt::format("{} points", mark.pointsMm.size());
-        fmt::print("  {:<24} {:<24} {:<10} {}\n", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)], mark.name,
-                   cases::kLandmarkSources[static_cast<std::size_t>(mark.source)], place);
+        fmt::print("  {:<24} {:<24} {:<10} {}\n", cases::kLandmarkKinds[static_cast<std::size_t>(mark.kind)],
+                   core::printable(mark.name), cases::kLandmarkSources[static_cast<std::size_t>(mark.source)], place);
     }
     fmt::print("{}: {} landmarks\n", o.find ? o.out : o.place, c.landmarks.size());
     for (const cases::Landmark& mark : lacked)

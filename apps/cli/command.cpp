@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 namespace handpiece::cli {
 namespace {
@@ -115,6 +116,14 @@ Option Command::option(const std::string& name, T& value, const std::string& hel
             return given.rfind("--", 0) == 0 ? fmt::format("its value is missing before {}", given) : std::string();
         },
         ""));
+    // CLI11 reads -1 as the largest number there is.
+    constexpr bool isUnsigned = std::is_same_v<T, std::size_t> || std::is_same_v<T, std::vector<std::size_t>>;
+    if (isUnsigned)
+        option->check(CLI::Validator(
+            [](const std::string& given) {
+                return given.starts_with('-') ? fmt::format("{} is not 0 or more", given) : std::string();
+            },
+            ""));
     return Option(*option);
 }
 Option Command::flag(const std::string& name, bool& value, const std::string& help) {

@@ -20,6 +20,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/core/utf8.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/scan/volume/write_scan.h"
 #include "handpiece/senses/view/image.h"
@@ -489,12 +490,12 @@ void makeCase(const ScanOptions& o) {
     const double writingS = secondsSince(start);
     for (std::size_t i = 0; i < places.size(); ++i) {
         const cases::Case& c = result.cases[i].toothCase;
-        fmt::print("{}: {}\n  {:<14} {:>8} faces {:>10.2f} mm3\n", places[i].string(), c.name, "outer",
+        fmt::print("{}: {}\n  {:<14} {:>8} faces {:>10.2f} mm3\n", places[i].string(), core::printable(c.name), "outer",
                    c.outer.triangles.size(), geometry::enclosedVolumeMm3(c.outer));
         for (const cases::Part& part : c.parts)
             if (part.tissue != cases::Tissue::enamel)  // its part is the whole tooth; its volume stands below
-                fmt::print("  {:<14} {:>8} faces {:>10.2f} mm3\n", part.name, part.mesh.triangles.size(),
-                           geometry::enclosedVolumeMm3(part.mesh));
+                fmt::print("  {:<14} {:>8} faces {:>10.2f} mm3\n", core::printable(part.name),
+                           part.mesh.triangles.size(), geometry::enclosedVolumeMm3(part.mesh));
         for (const cases::PlacedTooth& other : c.others)
             fmt::print("  tooth {:<8} {:>8} faces {:>10.2f} mm3{}\n", other.fdiNumber, other.outer.triangles.size(),
                        geometry::enclosedVolumeMm3(other.outer), other.isCuttable ? ", to be cut too" : "");

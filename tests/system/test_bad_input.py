@@ -163,6 +163,33 @@ class BadInput(SystemTest):
         self.refused("make", "tooth", "--kind", "upper-incisor", "--faces", "2000", "--out", "", mentions=["folder"])
         self.refused("passivity", "--stiffness-limit", "-1", "--out", self.folder / "p", mentions=["--stiffness-limit"])
         self.refused("bench", "--faces", "5", mentions=["--faces", "2000"])
+        for arguments in (["make", "mouth", "--faces", "99999999999"], ["make", "mouth", "--faces", "5"]):
+            self.refused(*arguments, "--out", self.folder / "t", mentions=["--faces", "2000"])
+
+    def test_negative_numbers_where_none_can_be(self):
+        # -5 was read as 18446744073709551611.
+        out = self.folder / "t"
+        for option, arguments in (("--faces", ["make", "mouth", "--faces", "-5", "--out", out]),
+                                  ("--seed", ["make", "tooth", "--seed", "-1", "--out", out]),
+                                  ("--faces", ["scan", "case", self.tooth, "--faces", "-1", "--out", out])):
+            with self.subTest(arguments=arguments):
+                done = run(*arguments)
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn(option, done.stderr)
+                self.assertIn("not 0 or more", done.stderr)
+                self.assertFalse(out.exists())
+
+    def test_names_of_a_file_do_not_reach_the_terminal_raw(self):
+        case = self.folder / "case"
+        case.mkdir()
+        (case / "o.stl").write_bytes(self.tooth.read_bytes())
+        text = 'format = 3\nname = "\\u001b[31mRED\\u0007"\nouter = "o.stl"\n[[part]]\nname = "enamel"\n'
+        (case / "case.toml").write_text(text + 'file = "o.stl"\ntissue = "enamel"\n')
+        told = self.ok("case", "info", case).stdout
+        self.assertIn("?[31mRED?", told)
+        self.assertNotIn("\x1b", told)
+        (case / "case.toml").write_text(text + 'file = "o.stl\\u0000x"\ntissue = "enamel"\n')
+        self.refused("case", "info", case, mentions=["o.stl?x", "is not a file inside the case's folder"])
         self.refused("make", "bur", "--out", self.folder / "b.stl", mentions=["--shape"])
         self.refused("make", "bur", "--name", "330", "--out", self.folder / "b.doc", mentions=["b.doc"])
         for arguments, word in ((["--rate", "0"], "--rate"), (["--rate", "-5"], "--rate"), (["--rate", "nan"], "--rate"),

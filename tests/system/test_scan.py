@@ -293,6 +293,8 @@ class Scan(SystemTest):
         bad(self.scan, "--at", "1,2", mentions=["--at"])
         bad(self.scan, "--percent", "0", mentions=["0 %"])
         bad(self.scan, "--percent", "6,6", mentions=["twice"])
+        bad(self.scan, "--percent", "0.001", mentions=["0.001 %", "do not make a tooth", "200"])
+        bad(self.scan, "--faces", "99999999999", mentions=["99999999999", "20000000 at most"])
         bad(self.scan, "--percent", "6", "--table2", mentions=["one of"])
         bad(self.scan, "--threshold", "tooth", mentions=["--threshold"])
         bad(self.scan, "--tooth", "49", mentions=["49", "FDI"])

@@ -56,5 +56,18 @@ TEST(Utf8, EveryCharacterAndNothingElse) {
     EXPECT_STREQ(Error("not there", "caf\xe9").what(), "caf\\xe9: not there");
 }
 
+TEST(Utf8, WhatIsPrintedHoldsNoControlCharacters) {
+    EXPECT_EQ(printable("\x1b[31mred\a"), "?[31mred?");
+    EXPECT_EQ(printable(std::string_view("o.stl\0x", 7)), "o.stl?x");
+    EXPECT_EQ(printable("a\nb\tc\r"), "a b c ");
+    EXPECT_EQ(printable("\x7f\xc2\x9b"
+                        "31m"),
+              "??31m");
+    // Whatever else there is stays as it is.
+    EXPECT_EQ(printable("46 \xc3\xa9 \xe6\xad\xaf \xc2\xb5m"), "46 \xc3\xa9 \xe6\xad\xaf \xc2\xb5m");
+    const Error error(std::string("the name \"a\0b\x1b\"", 15), "c\nd", "e");
+    EXPECT_STREQ(error.what(), "c d: the name \"a?b?\" (e)");
+}
+
 }  // namespace
 }  // namespace handpiece::core

@@ -375,5 +375,24 @@ TEST_F(CaseTest, ReadsNothingOutsideItsFolder) {
     }
 }
 
+TEST_F(CaseTest, FollowsNoLinkOutOfItsFolder) {
+    geometry::writeStl(folder() / "secret.stl", test::boxMesh({0, 0, 0}, {1, 1, 1}));
+    const fs::path home = caseOf("format = 1\nouter = \"outer.stl\"\n");
+    fs::remove(home / "outer.stl");
+    fs::create_symlink("../secret.stl", home / "outer.stl");
+    EXPECT_THAT(readError(home), AllOf(HasSubstr("outer.stl"), HasSubstr("a link that leads out")));
+    // By way of a folder too.
+    fs::remove(home / "outer.stl");
+    fs::create_symlink("..", home / "up");
+    caseOf("format = 1\nouter = \"up/secret.stl\"\n");
+    EXPECT_THAT(readError(home), HasSubstr("a link that leads out"));
+    // One that stays inside is a file as any other, and so is a case that is itself named by a link.
+    fs::copy_file(folder() / "secret.stl", home / "own.stl");
+    fs::create_symlink("own.stl", home / "outer.stl");
+    caseOf("format = 1\nouter = \"outer.stl\"\n");
+    fs::create_directory_symlink(home, folder() / "named");
+    EXPECT_EQ(readError(folder() / "named"), "");
+}
+
 }  // namespace
 }  // namespace handpiece::cases

@@ -27,6 +27,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kMinFaces = 200, kMostFaces = 20'000'000;  // of a case
+
 class Clock {
   public:
     [[nodiscard]] double seconds() const {
@@ -217,6 +219,12 @@ void decimate(ScanResult& result, const core::Progress& progress) {
         std::vector<double> percents = job.percents;
         const double fieldVoxelMm = field::FieldSettings{}.voxelMm;
         if (percents.empty()) percents = {surfacing::usefulPercent(*result.full, fieldVoxelMm)};
+        for (const double percent : percents)
+            if (const double left = 0.01 * percent * static_cast<double>(facesOf(*result.full));
+                percent < 100.0 && left < static_cast<double>(kMinFaces))
+                throw core::Error(fmt::format("{} % of the scan's {} faces do not make a tooth", shown(percent),
+                                              facesOf(*result.full)),
+                                  "scan", fmt::format("give as many as leave {} faces", kMinFaces));
         std::vector<surfacing::Surfaces> steps = surfacing::decimatedSteps(*result.full, percents, progress);
         if (job.percents.empty() && percents[0] < 100.0)
             result.caseNotes.push_back(fmt::format(
@@ -253,7 +261,9 @@ void requireJob(const ScanJob& job) {
     for (const double p : job.percents)
         if (!(p > 0.0 && p <= 100.0))
             throw core::Error(fmt::format("{} % is no share of a surface", p), "scan", "give above 0 to 100");
-    constexpr std::size_t kMinFaces = 200;
+    if (job.faces > kMostFaces)
+        throw core::Error(fmt::format("{} faces are more than are made", job.faces), "scan",
+                          fmt::format("give {} at most", kMostFaces));
     if (job.faces > 0 && job.faces < kMinFaces)
         throw core::Error(fmt::format("{} faces do not make a tooth", job.faces), "scan",
                           fmt::format("give {} at least", kMinFaces));

@@ -12,7 +12,7 @@ Error::Error(std::string what, std::string where, std::string remedy)
     if (!where_.empty()) message_ = where_ + ": ";
     message_ += problem_;
     if (!remedy_.empty()) message_ += " (" + remedy_ + ")";
-    message_ = asUtf8(message_);
+    message_ = printable(asUtf8(message_));
 }
 
 Error Error::as(std::string id, std::vector<std::string> arguments) && {

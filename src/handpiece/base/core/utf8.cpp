@@ -41,4 +41,21 @@ std::string asUtf8(std::string_view text) {
     return out.append(text);
 }
 
+std::string printable(std::string_view text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0u;
+        if (byte == '\n' || byte == '\r' || byte == '\t')
+            out += ' ';
+        else if (byte < 0x20 || byte == 0x7f)
+            out += '?';
+        else if (byte == 0xc2 && next >= 0x80 && next < 0xa0)
+            out += '?', ++i;
+        else
+            out += text[i];
+    }
+    return out;
+}
+
 }  // namespace handpiece::core

@@ -99,6 +99,7 @@ class Words {
             ++at_;
         return {begin, static_cast<std::size_t>(at_ - begin)};
     }
+    [[nodiscard]] std::string_view rest() const { return {at_, static_cast<std::size_t>(end_ - at_)}; }
     void skipLine() {
         while (at_ != end_ && *at_ != '\n' && *at_ != '\r')
             ++at_;

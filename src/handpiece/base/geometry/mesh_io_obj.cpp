@@ -89,6 +89,47 @@ std::uint32_t vertexAt(const Source& source, std::string_view word, std::size_t 
     return static_cast<std::uint32_t>(index);
 }
 
+/// Finds files that were put behind one another. A block is vertices and the faces after them; an OBJ counts its
+/// vertices through, so a block is of another file when its faces name vertex 1 again, and none beyond as many as the
+/// block has.
+class Blocks {
+  public:
+    struct Glued {
+        std::uint64_t files = 1, line = 0;  ///< of the second file's first vertex
+        std::size_t bytes = 0;              ///< of the first file
+    };
+
+    void vertex(std::size_t vertices, std::size_t at, std::uint64_t line) {
+        if (!hasFaces_ && vertices > 0) return;
+        close(vertices);
+        hasFaces_ = false;
+        first_ = vertices, at_ = at, line_ = line;
+        least_ = std::numeric_limits<std::uint32_t>::max(), most_ = 0;
+    }
+    void face(std::span<const std::uint32_t> corners) {
+        hasFaces_ = true;
+        for (const std::uint32_t corner : corners)
+            least_ = std::min(least_, corner), most_ = std::max(most_, corner);
+    }
+    /// Once, when all is read.
+    [[nodiscard]] const Glued& settle(std::size_t vertices) {
+        close(vertices);
+        return glued_;
+    }
+
+  private:
+    void close(std::size_t vertices) {
+        if (!hasFaces_ || first_ == 0 || least_ != 0 || most_ >= vertices - first_) return;
+        if (glued_.files++ == 1) glued_.line = line_, glued_.bytes = at_;
+    }
+
+    Glued glued_;
+    bool hasFaces_ = false;
+    std::size_t first_ = 0, at_ = 0;
+    std::uint64_t line_ = 0;
+    std::uint32_t least_ = 0, most_ = 0;
+};
+
 void tellLeftOut(const Source& source, std::uint64_t lines, std::uint64_t curved) {
     if (lines > 0)
         source.note(fmt::format("{} of points or lines {} left out: they are no surface",
@@ -99,12 +140,36 @@ void tellLeftOut(const Source& source, std::uint64_t lines, std::uint64_t curved
                                 curved == 1 ? "free-form curve or surface is" : "free-form curves or surfaces are"));
 }
 
+std::size_t unusedVertices(const TriangleMesh& mesh) {
+    std::vector<bool> used(mesh.vertices.size(), false);
+    for (const Triangle& t : mesh.triangles)
+        for (const std::uint32_t v : t)
+            used[v] = true;
+    return static_cast<std::size_t>(std::count(used.begin(), used.end(), false));
+}
+
+void tellUnused(const Source& source, std::size_t unused, std::size_t vertices) {
+    source.note(
+        fmt::format("{} of {} vertices are in no face: a file that was cut short looks like this", unused, vertices));
+}
+
+TriangleMesh readFirst(const Source& source, const Blocks::Glued& glued, VertexColours* colours) {
+    const Source first{source.data.first(glued.bytes), source.where, source.notes, source.folder};
+    TriangleMesh mesh = readObj(first, colours);
+    source.note(
+        fmt::format("{} files were glued into one: from line {} on the faces count their vertices from 1 again; only "
+                    "the first is read, with {} faces; save each as a file of its own",
+                    glued.files, glued.line, mesh.triangles.size()));
+    return mesh;
+}
+
 }  // namespace
 
 TriangleMesh readObj(const Source& source, VertexColours* colours) {
     TriangleMesh mesh;
     FoundColours found;
     ObjTexture texture;
+    Blocks blocks;
     BadCoordinates bad;
     const std::string_view text = source.text();
     std::string storage;
@@ -119,6 +184,7 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
         source.fail(fmt::format("the file ends in the middle of line {}", lineNumber), "export or copy the mesh again");
     };
     for (std::size_t at = 0; at < text.size();) {
+        const std::size_t lineAt = at;
         std::string_view line = nextLine(text, at, lineNumber, storage);
         const std::string_view key = nextWord(line);
         const bool isCut = endsOpen && at >= text.size();
@@ -127,6 +193,7 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
             if (isCut) failCut();  // what would follow it is missing, if not its digits
             const core::Vec3 v = takeVertex(source, line, lineNumber);
             if (!isCoordinate(v.x()) || !isCoordinate(v.y()) || !isCoordinate(v.z())) bad.add(mesh.vertices.size());
+            blocks.vertex(mesh.vertices.size(), lineAt, lineNumber);
             mesh.vertices.push_back(v);
             if (colours != nullptr) takeColour(line, found);
         } else if (key == "f") {
@@ -134,10 +201,7 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
             for (std::string_view word = nextWord(line); !word.empty(); word = nextWord(line)) {
                 if (word.front() == '#') break;
                 const std::uint32_t index = vertexAt(source, word, mesh.vertices.size(), lineNumber);
-                if (index >= highest) {
-                    highest = std::uint64_t{index} + 1;
-                    highestLine = lineNumber;
-                }
+                if (index >= highest) highest = std::uint64_t{index} + 1, highestLine = lineNumber;
                 corners.push_back(index);
                 if (colours != nullptr) texture.corner(word, index, mesh.vertices.size());
                 isAnotherForm = mesh.triangles.size() > 0 && formOf(word) != form;
@@ -147,6 +211,7 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
             if (corners.size() < 3)
                 source.fail(fmt::format("the face in line {} has fewer than three corners", lineNumber),
                             "export the mesh again");
+            blocks.face(corners);
             polygons.add(mesh.triangles, corners);
             if (mesh.triangles.size() > kMaxFaces)
                 source.fail(fmt::format("more than the {} faces that are read", kMaxFaces));
@@ -155,12 +220,12 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
         } else if (key == "curv" || key == "curv2" || key == "surf") {
             ++curved;
         } else if (colours != nullptr) {
-            if (key == "vt") texture.place(line);
-            if (key == "usemtl") texture.material(line);
-            if (key == "mtllib") texture.library(line);
+            texture.take(key, line);
         }
         // Everything else (normals, groups, comments) says nothing about the surface.
     }
+    if (const Blocks::Glued& glued = blocks.settle(mesh.vertices.size()); glued.files > 1)
+        return readFirst(source, glued, colours);
     if (highest > mesh.vertices.size())
         source.fail(
             fmt::format("the face in line {} names vertex {} of {}", highestLine, highest, mesh.vertices.size()),
@@ -172,16 +237,10 @@ TriangleMesh readObj(const Source& source, VertexColours* colours) {
     }
     settle(polygons, mesh, source);
     tellLeftOut(source, lines, curved);
-    std::vector<std::uint8_t> used(mesh.vertices.size(), 0);
-    for (const Triangle& t : mesh.triangles)
-        for (const std::uint32_t v : t)
-            used[v] = 1;
-    const auto unused = std::count(used.begin(), used.end(), std::uint8_t{0});
+    const std::size_t unused = unusedVertices(mesh);
     if (endsOpen && endsWithFace && unused > 0 && !mesh.triangles.empty()) failCut();
     if (endsOpen && endsWithFace) source.note("the last line has no end: see that the last face is whole");
-    if (unused > 0 && !mesh.triangles.empty())
-        source.note(fmt::format("{} of {} vertices are in no face: a file that was cut short looks like this", unused,
-                                mesh.vertices.size()));
+    if (unused > 0 && !mesh.triangles.empty()) tellUnused(source, unused, mesh.vertices.size());
     return mesh;
 }
 

@@ -93,6 +93,12 @@ std::array<double, 3> sampled(const Picture& picture, const std::array<float, 2>
 
 }  // namespace
 
+void ObjTexture::take(std::string_view key, std::string_view rest) {
+    if (key == "vt") place(rest);
+    if (key == "usemtl") material(rest);
+    if (key == "mtllib") library(rest);
+}
+
 void ObjTexture::library(std::string_view rest) {
     if (libraries_.size() < kMaxNames) libraries_.emplace_back(trimmed(rest));
 }

@@ -16,10 +16,8 @@ namespace handpiece::geometry::formats {
 /// Told line by line what an OBJ says of them; looked up at its vertices in the end.
 class ObjTexture {
   public:
-    /// `rest`: of the line, behind its key.
-    void library(std::string_view rest);
-    void material(std::string_view rest);
-    void place(std::string_view rest);
+    /// A line by its key and what is behind it; most say nothing of colours.
+    void take(std::string_view key, std::string_view rest);
     /// Corner `word` ("7/1", "7/1/3") of `vertex`, of as many as there were so far; the first that names a place
     /// counts.
     void corner(std::string_view word, std::uint32_t vertex, std::size_t vertices);
@@ -34,6 +32,10 @@ class ObjTexture {
         std::uint32_t place = kNone, material = kNone;
         bool isInFace = false;
     };
+    void library(std::string_view rest);
+    void material(std::string_view rest);
+    void place(std::string_view rest);
+
     std::vector<std::string> libraries_, materials_;
     std::uint32_t material_ = kNone;
     std::vector<std::array<float, 2>> places_;

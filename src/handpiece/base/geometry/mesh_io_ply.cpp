@@ -128,6 +128,11 @@ class Body {
         }
         return false;
     }
+    /// What was not taken yet.
+    [[nodiscard]] std::string_view rest() const {
+        if (encoding_ == Encoding::ascii) return words_.rest();
+        return {reinterpret_cast<const char*>(at_), static_cast<std::size_t>(end_ - at_)};
+    }
 
   private:
     template <class T>
@@ -179,12 +184,37 @@ class Reader {
         for (const Element& element : header_.elements)
             if (element.name == "tristrips" && element.count > 0)
                 source_.note("strips of triangles (tristrips) are left out: export it as triangles");
-        if (header_.encoding == Encoding::ascii && !Words::isSpace(source_.text().back()))
+        tellRest();
+        if (header_.encoding == Encoding::ascii && body_.rest().empty())
             source_.note(fmt::format("the last line has no end: see that face {} is whole", mesh_.triangles.size()));
         return std::move(mesh_);
     }
 
   private:
+    // Ends of lines and padding say nothing; all else is of somebody's surface.
+    void tellRest() const {
+        constexpr std::string_view kSpare{" \t\r\n\v\f\0", 7};
+        const std::string_view rest = body_.rest();
+        const std::size_t from = rest.find_first_not_of(kSpare);
+        if (from == std::string_view::npos) return;
+        if (const std::string_view more = rest.substr(from);
+            more.size() > 3 && more.starts_with("ply") && Words::isSpace(more[3]))
+            source_.note(
+                fmt::format("several PLY files were glued into one: only the first is read, with {} faces, and the {} "
+                            "bytes after it are left out; save each as a file of its own",
+                            mesh_.triangles.size(), more.size()));
+        else
+            source_.note(fmt::format("{} bytes after the {} vertices and {} faces that the header counts are left out",
+                                     rest.size(), mesh_.vertices.size(), countOf("face")));
+    }
+
+    [[nodiscard]] std::uint64_t countOf(std::string_view name) const {
+        std::uint64_t count = 0;
+        for (const Element& element : header_.elements)
+            if (element.name == name) count += element.count;
+        return count;
+    }
+
     [[noreturn]] void failAt(const Element& element, std::uint64_t i) const {
         source_.fail(fmt::format("the file ends (or is no number) in {} {} of {}", element.name.substr(0, 24), i + 1,
                                  element.count),

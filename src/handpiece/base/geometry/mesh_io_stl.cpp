@@ -17,21 +17,32 @@ std::uint32_t countInHeader(std::span<const std::byte> data) {
     return count;
 }
 
-// What follows the facets that are read.
-std::string afterTheLast(std::span<const std::byte> rest, std::uint64_t facets) {
-    std::uint64_t files = 0, more = 0;
-    std::span<const std::byte> at = rest;
+/// Whole binary STLs one after another, to the end of the file or to what is none.
+struct Glued {
+    std::uint64_t files = 0, facets = 0;
+    std::size_t bytesAfter = 0;
+};
+
+Glued gluedIn(std::span<const std::byte> at) {
+    Glued glued;
     while (at.size() > kHeaderBytes && (at.size() - kHeaderBytes) / kFacetBytes >= countInHeader(at) &&
            countInHeader(at) > 0) {
-        ++files;
-        more += countInHeader(at);
+        ++glued.files;
+        glued.facets += countInHeader(at);
         at = at.subspan(kHeaderBytes + countInHeader(at) * std::size_t{kFacetBytes});
     }
-    if (files > 0 && at.empty())
+    glued.bytesAfter = at.size();
+    return glued;
+}
+
+// What follows the facets that are read.
+std::string afterTheLast(std::span<const std::byte> rest, std::uint64_t facets) {
+    const Glued after = gluedIn(rest);
+    if (after.files > 0 && after.bytesAfter == 0)
         return fmt::format(
             "only the first of {} STL files in one is read, with {} facets: the {} facets after it are "
             "left out; save each as a file of its own",
-            files + 1, facets, more);
+            after.files + 1, facets, after.facets);
     return fmt::format("{} bytes after the last facet are left out", rest.size());
 }
 
@@ -45,7 +56,12 @@ std::uint64_t facetsOf(const Source& source) {
     const std::uint64_t said = countInHeader(data);
     const std::uint64_t whole = (data.size() - kHeaderBytes) / kFacetBytes;
     const std::uint64_t rest = (data.size() - kHeaderBytes) % kFacetBytes;
-    if (whole == said || (whole > said && said > 0 && rest != 0)) {
+    // 25 headers are as long as 42 facets: the length alone does not tell 26 files from a count that is wrong.
+    const auto isGlued = [&] {
+        const Glued glued = gluedIn(data);
+        return glued.files > 1 && glued.bytesAfter == 0;
+    };
+    if (whole == said || (whole > said && said > 0 && (rest != 0 || isGlued()))) {
         const std::uint64_t end = kHeaderBytes + said * kFacetBytes;
         if (end < data.size()) source.note(afterTheLast(data.subspan(end), said));
         return said;

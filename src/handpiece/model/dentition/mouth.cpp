@@ -43,6 +43,9 @@ double freeMemoryBytes() {
 }
 
 void requireMemory(const MouthOptions& options) {
+    if (options.faces < kMinFaces || options.faces > kMaxFaces)
+        throw core::Error(fmt::format("{} faces are not possible", options.faces), "--faces",
+                          fmt::format("give a number from {} to {}", kMinFaces, kMaxFaces));
     const double needed = mouthBytes(options), there = freeMemoryBytes();
     if (needed > there)
         throw core::Error(

@@ -230,6 +230,23 @@ TEST_F(Formats, MetaImage) {
     EXPECT_THAT(error("a.mha", "ObjectType = Image\n"), HasSubstr("ElementDataFile"));
 }
 
+TEST_F(Formats, ValuesAsTextAreRefused) {
+    std::string text;
+    for (const float v : kSmall)
+        text += "0" + std::to_string(static_cast<int>(v)) + " ";
+    for (const char* no : {"False", "false", "0"})
+        EXPECT_THAT(error("a.mha", metaImage("ElementSpacing = 1 1 1\nBinaryData = " + std::string(no) + "\n", text)),
+                    AllOf(HasSubstr("as text"), HasSubstr("a.mha"), HasSubstr("binary values")));
+    EXPECT_EQ(read("a.mha", metaImage("ElementSpacing = 1 1 1\nBinaryData = True\n", numbers(small<std::int16_t>())))
+                  .volume.values,
+              kSmall);
+    for (const char* encoding : {"ascii", "text", "txt", "hex"})
+        EXPECT_THAT(
+            error("a.nrrd", nrrd("short", "endian: little\nspacings: 1 1 1\nencoding: " + std::string(encoding) + "\n",
+                                 text)),
+            AllOf(HasSubstr(encoding), HasSubstr("raw or gzip")));
+}
+
 std::vector<std::pair<int, std::string>> namesIn(const Scan& scan) {
     std::vector<std::pair<int, std::string>> names;
     for (const LabelName& name : scan.series.labelNames)

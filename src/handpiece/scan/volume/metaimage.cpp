@@ -91,6 +91,9 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
         throw wrong(fmt::format("values of the type \"{}\" are not read", shown(field({"ElementType"}))),
                     "save it as MET_SHORT, MET_USHORT, MET_UCHAR or MET_FLOAT");
     samples.type = *type;
+    if (const std::string binary = lowered(field({"BinaryData"})); binary == "false" || binary == "0" || binary == "no")
+        throw wrong("its values are written as text (BinaryData = False), which is not read",
+                    "save it with binary values");
     samples.isBigEndian = flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
     samples.orderRemedy =
         fmt::format("set \"BinaryDataByteOrderMSB = {}\" in its header", samples.isBigEndian ? "False" : "True");

@@ -140,6 +140,33 @@ TEST_F(Formats, NrrdUnitsShearAndBadSpacing) {
                 HasSubstr("tells no spacing"));
 }
 
+TEST_F(Formats, NrrdUnitsAreKnownOrAskedFor) {
+    const auto written = [](const std::string& first, const std::string& last, double step) {
+        const std::string n = std::to_string(step);
+        return nrrd("float",
+                    "endian: little\nencoding: raw\nspace dimension: 3\nspace directions: (" + n + ",0,0) (0," + n +
+                        ",0) (0,0," + n + ")\nspace origin: (" + n + ",0,0)\nspace units: \"" + first + "\" \"" +
+                        first + "\" \"" + last + "\"\n",
+                    numbers(kSmall));
+    };
+    const std::map<std::string, double> units{
+        {"micrometers", 1e-3}, {"micrometres", 1e-3}, {"Microns", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3},
+        {"millimeters", 1.0},  {"centimetres", 10.0}, {"inches", 25.4},  {"in", 25.4},        {"", 1.0}};
+    for (const auto& [unit, mm] : units) {
+        const Grid grid = read("a.nrrd", written(unit, unit, 0.2 / mm)).volume.grid;
+        EXPECT_TRUE(grid.spacingMm.isApprox(core::Vec3::Constant(0.2), 1e-3)) << unit;
+        EXPECT_NEAR(grid.originMm.x(), 0.2, 1e-3) << unit;
+    }
+    EXPECT_TRUE(read("a.nrrd", written("mm", "um", 50)).volume.grid.spacingMm.isApprox(core::Vec3(50, 50, 0.05)));
+    for (const auto& [first, last] : {std::pair("cubits", "cubits"), std::pair("mm", "cubits")}) {
+        EXPECT_THAT(error("a.nrrd", written(first, last, 0.2)),
+                    AllOf(HasSubstr("unit \"cubits\" is not known"), HasSubstr("give the spacing")));
+        ReadSettings settings;
+        settings.spacingMm = core::Vec3(0.1, 0.1, 0.2);
+        EXPECT_EQ(read("a.nrrd", written(first, last, 0.2), settings).volume.grid.spacingMm, *settings.spacingMm);
+    }
+}
+
 TEST_F(Formats, NrrdBadInput) {
     const std::string data = numbers(small<std::int16_t>());
     EXPECT_THAT(error("a.nrrd", nrrd("short", kLittle, data.substr(0, 30))),
@@ -242,8 +269,8 @@ TEST_F(Formats, ValuesAsTextAreRefused) {
               kSmall);
     for (const char* encoding : {"ascii", "text", "txt", "hex"})
         EXPECT_THAT(
-            error("a.nrrd", nrrd("short", "endian: little\nspacings: 1 1 1\nencoding: " + std::string(encoding) + "\n",
-                                 text)),
+            error("a.nrrd",
+                  nrrd("short", "endian: little\nspacings: 1 1 1\nencoding: " + std::string(encoding) + "\n", text)),
             AllOf(HasSubstr(encoding), HasSubstr("raw or gzip")));
 }
 

@@ -257,6 +257,46 @@ TEST_F(Formats, MetaImage) {
     EXPECT_THAT(error("a.mha", "ObjectType = Image\n"), HasSubstr("ElementDataFile"));
 }
 
+TEST_F(Formats, ALinkOutOfTheFolderIsNotFollowed) {
+    namespace fs = std::filesystem;
+    const std::string data = numbers(small<std::int16_t>());
+    test::writeBytes(at("outside.raw"), data);
+    std::string mhd = metaImage("ElementSpacing = 1 1 1\n", "");
+    mhd.replace(mhd.find("LOCAL"), 5, "link.raw");
+    test::writeBytes(at("scan/a.mhd"), mhd);
+    test::writeBytes(at("scan/b.nhdr"), nrrd("short", kLittle + "data file: link.raw\n", ""));
+    const auto readBoth = [&](const fs::path& target) {
+        fs::remove(at("scan/link.raw"));
+        fs::create_symlink(target, at("scan/link.raw"));
+        std::array<std::string, 2> told;
+        told[0] = errorOf([&] { (void)readScan(at("scan/a.mhd")); });
+        told[1] = errorOf([&] { (void)readScan(at("scan/b.nhdr")); });
+        return told;
+    };
+    for (const fs::path& target : {at("outside.raw"), fs::path("../outside.raw")})
+        for (const std::string& told : readBoth(target))
+            EXPECT_THAT(told, AllOf(HasSubstr("leads out of the scan's folder"), HasSubstr("link.raw")));
+    // Within the folder a link is as good as a file.
+    test::writeBytes(at("scan/v.raw"), data);
+    for (const std::string& told : readBoth("v.raw"))
+        EXPECT_EQ(told, "");
+}
+
+TEST_F(Formats, DamagedDirectionsAreToldAsSuch) {
+    const std::string data = numbers(small<std::int16_t>()),
+                      spacing = "ElementSpacing = 0.1 0.1 0.1\nTransformMatrix = ";
+    for (const char* wrong : {"1 0 0 0 1 0 0 0 x", "1 0 0 0 1 0 0 0", "1 0 0 0 1 0 0 0 1 0", "1 0 0 0 1 0 0 0 nan"})
+        EXPECT_THAT(error("a.mha", metaImage(spacing + wrong + "\n", data)),
+                    AllOf(HasSubstr("TransformMatrix is not nine numbers"), HasSubstr("a.mha")))
+            << wrong;
+    EXPECT_THAT(error("a.mha", metaImage(spacing + "1 0 0 0 1 0 0 0 0\n", data)), HasSubstr("is 0 0 0"));
+    EXPECT_THAT(error("a.mha", metaImage(spacing + "1 0 0 0 1 0 0 1 0\n", data)), HasSubstr("directions are damaged"));
+    EXPECT_THAT(
+        error("a.nrrd",
+              nrrd("short", "endian: little\nencoding: raw\nspace directions: (1,0,0) (0,1,0) (1,1,0)\n", data)),
+        HasSubstr("directions are damaged"));
+}
+
 TEST_F(Formats, ValuesAsTextAreRefused) {
     std::string text;
     for (const float v : kSmall)
@@ -511,6 +551,9 @@ TEST_F(Formats, NonNumbersAreReadAsNothingAndTold) {
     EXPECT_EQ(scan.volume.values[3], 0.0f);
     EXPECT_EQ(scan.volume.values[5], 0.0f);
     EXPECT_THAT(scan.series.notes, Contains(HasSubstr("2 values are no numbers")));
+    values[5] = 7.0f;
+    EXPECT_THAT(read("a.nrrd", nrrd("float", kLittle, numbers(values))).series.notes,
+                Contains("1 value is no number and was read as 0"));
 }
 
 TEST_F(Formats, ValuesOfNoScannerAreReadAsNothing) {

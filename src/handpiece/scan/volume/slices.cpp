@@ -241,9 +241,9 @@ void findSpacing(const FileSet& files, const std::string& firstName, const std::
 
 /// What a scan.toml beside the pictures says; scale of their values.
 std::pair<double, double> describeBeside(const FileSet& files, const std::string& name, Candidate& c) {
-    const auto toml = files.find(name, "scan.toml");
-    if (!toml) return {1.0, 0.0};
     try {
+        const auto toml = files.find(name, "scan.toml");
+        if (!toml) return {1.0, 0.0};
         const Description d = readDescription(files, *toml);
         if (!d.file.empty()) return {1.0, 0.0};  // of raw numbers that lie here too
         apply(d, c);

@@ -241,8 +241,10 @@ void row(std::string_view label, const std::string& value) {
 }
 
 void tellNotes(const std::vector<std::string>& notes) {
+    // The window names its own switch.
     for (const std::string& note : notes)
-        fmt::print("  note: {}\n", note);
+        fmt::print("  note: {}{}\n", note,
+                   note.starts_with("left and right may be swapped") ? " (--reverse-slices)" : "");
 }
 
 void tellVolumes(const ScanResult& result) {

@@ -127,6 +127,23 @@ TEST_F(Dicom, SliceOfAnotherSizeIsNamed) {
     EXPECT_THAT(error(chosen("")), AllOf(HasSubstr("different sizes"), HasSubstr("IM3"), HasSubstr("5 x 3")));
 }
 
+TEST_F(Dicom, SlicesOfOtherGreyAreNamed) {
+    auto series = dicomSeries(5);
+    series[2].photometric = "MONOCHROME1";
+    writeSeries(series, folder_);
+    EXPECT_THAT(error(), AllOf(HasSubstr("low values are meant to be bright"), HasSubstr("IM3")));
+    series = dicomSeries(5);
+    series[0].bits = series[0].stored = 8;
+    series[0].pixels.resize(15);  // 30 bytes
+    writeSeries(series, folder_);
+    EXPECT_THAT(error(), AllOf(HasSubstr("8 bits"), HasSubstr("IM1")));
+    // Fewer bits of as many are the same scale.
+    series = dicomSeries(5);
+    series[1].stored = 12;
+    writeSeries(series, folder_);
+    EXPECT_EQ(readScan(folder_).volume.grid.size[2], 5);
+}
+
 TEST_F(Dicom, StraySlicesAreRefused) {
     auto series = dicomSeries(6);
     series[3].position = "5\\4\\13";
@@ -228,6 +245,17 @@ TEST_F(Dicom, TruncatedPixelsAreNamed) {
     // Cut within the header, the slice is left out and the hole is explained by it.
     test::cutFile(folder_ / "IM3", 0.5);
     EXPECT_THAT(error(), AllOf(HasSubstr("ends in its header"), HasSubstr("IM3")));
+    // More than the header tells of: half of a scan would be read.
+    DicomMaker more;
+    more.frames = 4;
+    more.between = "2";
+    more.pixels.resize(8 * 30);
+    test::writeBytes(temporary_.path() / "more.dcm", more.bytes());
+    EXPECT_THAT(errorOf([&] { (void)readScan(temporary_.path() / "more.dcm"); }),
+                AllOf(HasSubstr("4 frames"), HasSubstr("those of 8"), HasSubstr("more.dcm")));
+    more.frames = 1;
+    test::writeBytes(temporary_.path() / "more.dcm", more.bytes());
+    EXPECT_THAT(errorOf([&] { (void)readScan(temporary_.path() / "more.dcm"); }), HasSubstr("1 frame, and its pixels"));
     auto series = dicomSeries(2);
     series[0].pixels.resize(7);  // the element is whole, but too short
     writeSeries(series, temporary_.path() / "short");

@@ -391,6 +391,63 @@ TEST_F(ScanFiles, TiffPagesOfFloatsAndOfImageJ) {
     EXPECT_THAT(error(), HasSubstr("stack.tif"));
 }
 
+TEST_F(ScanFiles, TiffOfChannelsOrTimesIsNoStackOfSlices) {
+    const fs::path file = folder_ / "stack.tif";
+    const std::string ome = "<?xml version=\"1.0\"?><OME><Image><Pixels SizeX=\"20\" SizeY=\"18\" SizeZ=\"2\" SizeC=";
+    const std::string imageJ = "ImageJ=1.53t\nimages=4\nunit=mm\nspacing=0.3\n";
+    for (const std::string& wrong :
+         {imageJ + "channels=2\nslices=2\nhyperstack=true\n", imageJ + "slices=2\nframes=2\nhyperstack=true\n",
+          imageJ + "frames=4\n", ome + "\"2\" SizeT=\"1\"/></Image></OME>",
+          ome + "\"1\" SizeT=\"2\"/></Image></OME>"}) {
+        writePages(file, 4, false, wrong.c_str());
+        EXPECT_THAT(error(), AllOf(HasSubstr("stack.tif"), HasSubstr("not the slices of one scan"),
+                                   HasSubstr("one channel and one time point")))
+            << wrong;
+    }
+    ReadSettings settings;
+    settings.spacingMm = core::Vec3::Ones();
+    for (const std::string& right :
+         {imageJ + "channels=1\nslices=4\nframes=1\n", ome + "\"1\" SizeT=\"1\"/></Image></OME>",
+          std::string("SizeC=\"2\" channels=2")}) {
+        writePages(file, 4, false, right.c_str());
+        EXPECT_EQ(readScan(folder_, settings).volume.grid.size[2], 4) << right;
+    }
+    writePages(file, 4, true, (imageJ + "channels=2\nslices=2\n").c_str());
+    EXPECT_THAT(error(), HasSubstr("2 channels and 1 time point,"));
+}
+
+TEST_F(ScanFiles, TiffPagesThatAreMissingOrLeadBackAreTold) {
+    const fs::path file = folder_ / "stack.tif";
+    for (const char* tells : {"ImageJ=1.53t\nimages=7\nslices=7\nunit=mm\nspacing=0.3\n",
+                              "<OME><Image><Pixels SizeZ=\"7\" SizeC=\"1\" SizeT=\"1\"/></Image></OME>"}) {
+        writePages(file, 4, false, tells);
+        EXPECT_THAT(error(), AllOf(HasSubstr("7 pages, and 4 are there"), HasSubstr("stack.tif"))) << tells;
+    }
+    // The last page names the first, the second or itself as the next.
+    for (const int back : {0, 1, 3}) {
+        writePages(file, 4, false, nullptr);
+        std::string bytes = test::readBytes(file);
+        const auto number = [&](std::size_t at, int count) {
+            std::size_t value = 0;
+            for (int i = count; i-- > 0;)
+                value = value << 8 | static_cast<unsigned char>(bytes[at + static_cast<std::size_t>(i)]);
+            return value;
+        };
+        std::vector<std::size_t> directories;
+        std::size_t next = 4;
+        for (std::size_t at = number(4, 4); at != 0; at = number(next, 4)) {
+            directories.push_back(at);
+            next = at + 2 + 12 * number(at, 2);
+        }
+        ASSERT_EQ(directories.size(), 4u);
+        bytes.replace(
+            next, 4,
+            test::numbers(std::vector{static_cast<std::uint32_t>(directories[static_cast<std::size_t>(back)])}));
+        test::writeBytes(file, bytes);
+        EXPECT_THAT(error(), AllOf(HasSubstr("behind its page 4"), HasSubstr("stack.tif"))) << back;
+    }
+}
+
 // ImageJ's large stacks: one directory, all pages one after another behind it.
 TEST_F(ScanFiles, TiffOfOneDirectoryAndManyPages) {
     constexpr int kWidth = 20, kHeight = 18, kPages = 5;
@@ -420,8 +477,11 @@ TEST_F(ScanFiles, TiffOfOneDirectoryAndManyPages) {
         EXPECT_TRUE(v.grid.spacingMm.isApprox(core::Vec3(0.1, 0.1, 0.3), 1e-6));
         for (int n = 0; n < kWidth * kHeight * kPages; ++n)
             ASSERT_EQ(v.values[static_cast<std::size_t>(n)], static_cast<float>(3 * n)) << isBig;
+        std::string odd = test::readBytes(file), two = odd;
+        two.replace(two.find("slices=5"), 8, "frames=5");
+        test::writeBytes(file, two);
+        EXPECT_THAT(error(), HasSubstr("5 time points"));
         // Of more pages than there are it is told.
-        std::string odd = test::readBytes(file);
         odd.replace(odd.find("images=5"), 8, "images=9");
         test::writeBytes(file, odd);
         EXPECT_THAT(error(), HasSubstr("too short"));

@@ -140,6 +140,33 @@ TEST_F(Formats, NrrdUnitsShearAndBadSpacing) {
                 HasSubstr("tells no spacing"));
 }
 
+TEST_F(Formats, NrrdUnitsAreKnownOrAskedFor) {
+    const auto written = [](const std::string& first, const std::string& last, double step) {
+        const std::string n = std::to_string(step);
+        return nrrd("float",
+                    "endian: little\nencoding: raw\nspace dimension: 3\nspace directions: (" + n + ",0,0) (0," + n +
+                        ",0) (0,0," + n + ")\nspace origin: (" + n + ",0,0)\nspace units: \"" + first + "\" \"" +
+                        first + "\" \"" + last + "\"\n",
+                    numbers(kSmall));
+    };
+    const std::map<std::string, double> units{
+        {"micrometers", 1e-3}, {"micrometres", 1e-3}, {"Microns", 1e-3}, {"\xc2\xb5m", 1e-3}, {"\xce\xbcm", 1e-3},
+        {"millimeters", 1.0},  {"centimetres", 10.0}, {"inches", 25.4},  {"in", 25.4},        {"", 1.0}};
+    for (const auto& [unit, mm] : units) {
+        const Grid grid = read("a.nrrd", written(unit, unit, 0.2 / mm)).volume.grid;
+        EXPECT_TRUE(grid.spacingMm.isApprox(core::Vec3::Constant(0.2), 1e-3)) << unit;
+        EXPECT_NEAR(grid.originMm.x(), 0.2, 1e-3) << unit;
+    }
+    EXPECT_TRUE(read("a.nrrd", written("mm", "um", 50)).volume.grid.spacingMm.isApprox(core::Vec3(50, 50, 0.05)));
+    for (const auto& [first, last] : {std::pair("cubits", "cubits"), std::pair("mm", "cubits")}) {
+        EXPECT_THAT(error("a.nrrd", written(first, last, 0.2)),
+                    AllOf(HasSubstr("unit \"cubits\" is not known"), HasSubstr("give the spacing")));
+        ReadSettings settings;
+        settings.spacingMm = core::Vec3(0.1, 0.1, 0.2);
+        EXPECT_EQ(read("a.nrrd", written(first, last, 0.2), settings).volume.grid.spacingMm, *settings.spacingMm);
+    }
+}
+
 TEST_F(Formats, NrrdBadInput) {
     const std::string data = numbers(small<std::int16_t>());
     EXPECT_THAT(error("a.nrrd", nrrd("short", kLittle, data.substr(0, 30))),
@@ -228,6 +255,63 @@ TEST_F(Formats, MetaImage) {
     EXPECT_THAT(error("a.mha", metaImage(spacing + "ElementNumberOfChannels = 3\n", data)),
                 HasSubstr("3 values a voxel"));
     EXPECT_THAT(error("a.mha", "ObjectType = Image\n"), HasSubstr("ElementDataFile"));
+}
+
+TEST_F(Formats, ALinkOutOfTheFolderIsNotFollowed) {
+    namespace fs = std::filesystem;
+    const std::string data = numbers(small<std::int16_t>());
+    test::writeBytes(at("outside.raw"), data);
+    std::string mhd = metaImage("ElementSpacing = 1 1 1\n", "");
+    mhd.replace(mhd.find("LOCAL"), 5, "link.raw");
+    test::writeBytes(at("scan/a.mhd"), mhd);
+    test::writeBytes(at("scan/b.nhdr"), nrrd("short", kLittle + "data file: link.raw\n", ""));
+    const auto readBoth = [&](const fs::path& target) {
+        fs::remove(at("scan/link.raw"));
+        fs::create_symlink(target, at("scan/link.raw"));
+        std::array<std::string, 2> told;
+        told[0] = errorOf([&] { (void)readScan(at("scan/a.mhd")); });
+        told[1] = errorOf([&] { (void)readScan(at("scan/b.nhdr")); });
+        return told;
+    };
+    for (const fs::path& target : {at("outside.raw"), fs::path("../outside.raw")})
+        for (const std::string& told : readBoth(target))
+            EXPECT_THAT(told, AllOf(HasSubstr("leads out of the scan's folder"), HasSubstr("link.raw")));
+    // Within the folder a link is as good as a file.
+    test::writeBytes(at("scan/v.raw"), data);
+    for (const std::string& told : readBoth("v.raw"))
+        EXPECT_EQ(told, "");
+}
+
+TEST_F(Formats, DamagedDirectionsAreToldAsSuch) {
+    const std::string data = numbers(small<std::int16_t>()),
+                      spacing = "ElementSpacing = 0.1 0.1 0.1\nTransformMatrix = ";
+    for (const char* wrong : {"1 0 0 0 1 0 0 0 x", "1 0 0 0 1 0 0 0", "1 0 0 0 1 0 0 0 1 0", "1 0 0 0 1 0 0 0 nan"})
+        EXPECT_THAT(error("a.mha", metaImage(spacing + wrong + "\n", data)),
+                    AllOf(HasSubstr("TransformMatrix is not nine numbers"), HasSubstr("a.mha")))
+            << wrong;
+    EXPECT_THAT(error("a.mha", metaImage(spacing + "1 0 0 0 1 0 0 0 0\n", data)), HasSubstr("is 0 0 0"));
+    EXPECT_THAT(error("a.mha", metaImage(spacing + "1 0 0 0 1 0 0 1 0\n", data)), HasSubstr("directions are damaged"));
+    EXPECT_THAT(
+        error("a.nrrd",
+              nrrd("short", "endian: little\nencoding: raw\nspace directions: (1,0,0) (0,1,0) (1,1,0)\n", data)),
+        HasSubstr("directions are damaged"));
+}
+
+TEST_F(Formats, ValuesAsTextAreRefused) {
+    std::string text;
+    for (const float v : kSmall)
+        text += "0" + std::to_string(static_cast<int>(v)) + " ";
+    for (const char* no : {"False", "false", "0"})
+        EXPECT_THAT(error("a.mha", metaImage("ElementSpacing = 1 1 1\nBinaryData = " + std::string(no) + "\n", text)),
+                    AllOf(HasSubstr("as text"), HasSubstr("a.mha"), HasSubstr("binary values")));
+    EXPECT_EQ(read("a.mha", metaImage("ElementSpacing = 1 1 1\nBinaryData = True\n", numbers(small<std::int16_t>())))
+                  .volume.values,
+              kSmall);
+    for (const char* encoding : {"ascii", "text", "txt", "hex"})
+        EXPECT_THAT(
+            error("a.nrrd",
+                  nrrd("short", "endian: little\nspacings: 1 1 1\nencoding: " + std::string(encoding) + "\n", text)),
+            AllOf(HasSubstr(encoding), HasSubstr("raw or gzip")));
 }
 
 std::vector<std::pair<int, std::string>> namesIn(const Scan& scan) {
@@ -467,6 +551,9 @@ TEST_F(Formats, NonNumbersAreReadAsNothingAndTold) {
     EXPECT_EQ(scan.volume.values[3], 0.0f);
     EXPECT_EQ(scan.volume.values[5], 0.0f);
     EXPECT_THAT(scan.series.notes, Contains(HasSubstr("2 values are no numbers")));
+    values[5] = 7.0f;
+    EXPECT_THAT(read("a.nrrd", nrrd("float", kLittle, numbers(values))).series.notes,
+                Contains("1 value is no number and was read as 0"));
 }
 
 TEST_F(Formats, ValuesOfNoScannerAreReadAsNothing) {

@@ -141,9 +141,9 @@ TEST_F(Handedness, OfDicomInOneFile) {
     written("-0.2", "");
     expect(-1, "minus between");
     written("0.2", "");
-    expect(0, "between", "the file does not tell to which side");
+    expect(0, "between", "the file does not tell whether its slices are counted upwards or downwards");
     written("", maker.element(0x18, 0x50, "DS", "0.2"));
-    expect(0, "thickness", "the file does not tell to which side");
+    expect(0, "thickness", "the file does not tell whether its slices are counted upwards or downwards");
     written("0.2", "", false);
     expect(0, "no place", "the file does not tell where its frames lie");
     EXPECT_EQ(cases_, 6);

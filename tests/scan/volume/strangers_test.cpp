@@ -378,6 +378,40 @@ TEST_F(Strangers, SizesAreTakenFromSkyscansLog) {
     EXPECT_EQ(spacing(), core::Vec3(0.3, 0.3, 0.4));
 }
 
+TEST_F(Strangers, NReconMayHaveWrittenEverySecondSlice) {
+    struct Case {
+        int step, gap;
+        double mm;
+        std::string told;
+    };
+    for (const Case& one :
+         {Case{1, 1, 0.02, "the size of a voxel, 0.02 mm"}, Case{2, 1, 0.04, "2 pixels (0.04 mm) apart by this log"},
+          Case{1, 2, 0.04, "2 pixels (0.04 mm) apart by their numbers"},
+          Case{2, 2, 0.04, "2 pixels (0.04 mm) apart by this log"},
+          Case{2, 6, 0.12, "6 pixels (0.12 mm) apart by this log"}, Case{4, 2, 0.0, "do not fit each other"},
+          Case{0, 1, 0.0, "do not fit each other"}}) {
+        anew();
+        writeScan(test::sampleVolume({9, 8, 7}), folder_, ScanFormat::bmp);
+        fs::remove(folder_ / "scan.toml");
+        std::vector<fs::path> slices;
+        for (const auto& e : fs::directory_iterator(folder_))
+            slices.push_back(e.path());
+        ASSERT_EQ(slices.size(), 7u);
+        for (int k = 0; k < 7; ++k)
+            fs::rename(slices[static_cast<std::size_t>(k)],
+                       folder_ / ("tooth_rec" + std::to_string(1010 + k * one.gap) + ".bmp"));
+        test::writeBytes(folder_ / "tooth_rec.log",
+                         "[Acquisition]\r\nImage Pixel Size (um)=10\r\n[Reconstruction]\r\n"
+                         "Section to Section Step=" +
+                             std::to_string(one.step) + "\r\nPixel Size (um)=20\r\n");
+        const Series series = findSeries(folder_)[0];
+        EXPECT_EQ(series.isSpacingKnown, one.mm > 0.0) << one.told;
+        const core::Vec3 mm = one.mm > 0.0 ? core::Vec3(0.02, 0.02, one.mm) : core::Vec3(0, 0, 0);
+        EXPECT_TRUE(series.spacingMm.isApprox(mm)) << one.told;
+        EXPECT_THAT(series.notes, Contains(HasSubstr(one.told)));
+    }
+}
+
 // ---- inks
 
 constexpr std::array<std::array<int, 4>, 4> kInks{

@@ -137,7 +137,7 @@ Region segmentLabels(const volume::Labels& labels, const Settings& settings, con
         throw core::Error("the label volume has no voxels", "labels", "read it again");
     if (!(scan.spacingMm.minCoeff() > 0) || !scan.spacingMm.allFinite())
         throw core::Error("the spacing of the voxels is not known", "labels", "give it in millimetres");
-    if (scan.spacingMm.maxCoeff() > 0.6)
+    if (scan.spacingMm.maxCoeff() > 0.6 * (1.0 + 1e-6))  // files keep it as 32-bit numbers
         throw core::Error(fmt::format("the labels are too coarse: voxels of {:.3g} mm", scan.spacingMm.maxCoeff()),
                           "labels", "use labels of 0.6 mm or finer")
             .as("scan-too-coarse", {fmt::format("{:.3g}", scan.spacingMm.maxCoeff()), "0.6"});

@@ -23,7 +23,7 @@ void checkScan(const volume::Grid& grid, std::size_t values) {
     const double coarsest = grid.spacingMm.maxCoeff();
     if (!(grid.spacingMm.minCoeff() > 0) || !std::isfinite(coarsest))
         throw core::Error("the spacing of the voxels is not known", "scan", "give it in millimetres");
-    if (coarsest > kCoarsestMm)
+    if (coarsest > kCoarsestMm * (1.0 + 1e-6))  // files keep it as 32-bit numbers
         throw core::Error(
             fmt::format("the scan is too coarse: voxels of {:.3g} x {:.3g} x {:.3g} mm cannot show enamel "
                         "and pulp",

@@ -306,10 +306,19 @@ std::optional<std::pair<std::string, std::string>> unreadable(const DicomHeader&
         if (h.pixelBytes < needed)
             return Answer(fmt::format("its pixel data is truncated: {} of {} bytes are there", h.pixelBytes, needed),
                           "copy or export it again");
+        const std::uint64_t frameBytes = needed / static_cast<std::uint64_t>(h.frames);
+        if (h.pixelBytes >= needed + frameBytes)
+            return Answer(fmt::format("it tells of {} frame{}, and its pixels are those of {}", h.frames,
+                                      h.frames == 1 ? "" : "s", h.pixelBytes / frameBytes),
+                          "export it again from where it was made");
     } else if (h.fragments.size() < static_cast<std::size_t>(h.frames)) {
         return Answer(fmt::format("its pixel data is truncated: {} packed pieces are there for {} frames",
                                   h.fragments.size(), h.frames),
                       "copy or export it again");
+    } else if (h.frames > 1 && h.frameOffsets.size() > static_cast<std::size_t>(h.frames)) {
+        return Answer(
+            fmt::format("it tells of {} frames, and its pixels are those of {}", h.frames, h.frameOffsets.size()),
+            "export it again from where it was made");
     }
     return {};
 }

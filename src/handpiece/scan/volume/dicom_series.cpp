@@ -128,6 +128,7 @@ class Assembly {
         for (const Slice& s : slices)
             if (const auto why = unreadable(*s.header); why && !c.problem)
                 c.problem = core::Error(why->first, files_->where(s.file), why->second);
+        if (!c.problem) c.problem = otherGrey();
         sort(c);
         const bool isTurned = !c.problem && first.photometric == "MONOCHROME1" && turnsGreyOver(c);
         addNotes(c);
@@ -189,6 +190,33 @@ class Assembly {
                 to[i] += at.share * (next[i] - to[i]);
         }
     };
+
+    /// Slices whose grey values have another meaning than those of most.
+    std::optional<core::Error> otherGrey() const {
+        const std::vector<Slice>& slices = group_.slices;
+        const auto odd = [&](const auto& kindOf) -> const Slice* {
+            std::map<int, std::size_t> counts;
+            for (const Slice& s : slices)
+                ++counts[kindOf(*s.header)];
+            const auto most = std::max_element(counts.begin(), counts.end(),
+                                               [](const auto& a, const auto& b) { return a.second < b.second; });
+            const auto found = std::find_if(slices.begin(), slices.end(),
+                                            [&](const Slice& s) { return kindOf(*s.header) != most->first; });
+            return found == slices.end() ? nullptr : &*found;
+        };
+        const std::string remedy =
+            "put it into a folder of its own, or export the series again with slices of one kind";
+        if (const Slice* s = odd([](const DicomHeader& h) { return h.allocated; }))
+            return core::Error(
+                fmt::format("its values have {} bits, and those of other slices have not", s->header->allocated),
+                files_->where(s->file), remedy);
+        if (const Slice* s = odd([](const DicomHeader& h) { return h.photometric == "MONOCHROME1" ? 1 : 0; }))
+            return core::Error(fmt::format("its low values are meant to be {}, and those of other slices {}",
+                                           s->header->photometric == "MONOCHROME1" ? "bright" : "dark",
+                                           s->header->photometric == "MONOCHROME1" ? "dark" : "bright"),
+                               files_->where(s->file), remedy);
+        return {};
+    }
 
     /// Whether a scan that shall be shown with low values bright is turned over: not where its values rise with density
     /// all the same (Hounsfield units), which the outside tells, as it is the least dense.
@@ -334,7 +362,7 @@ class Assembly {
             c.sideProblem = slices[0].header->frames > 1 ? "the file does not tell where its frames lie"
                                                          : "the files do not tell where the slices lie";
         else if (!slices[0].header->frameStep().tellsSide)
-            c.sideProblem = "the file does not tell to which side of the first frame the others lie";
+            c.sideProblem = "the file does not tell whether its slices are counted upwards or downwards";
     }
 
     /// Doubled and missing slices. `isMeasured`: they are sorted by millimetres.
@@ -429,7 +457,10 @@ class Assembly {
                 "these are pictures of a screen or a film (secondary capture): grey values and burned-in text cannot "
                 "be trusted");
         if (const char* by = group_.slices[0].header->frameStep().by)
-            notes.push_back(fmt::format("all its slices have one place: they are taken to lie as its {} says", by));
+            notes.push_back(
+                fmt::format("the file tells the place of its first slice only: the others are taken to follow at the "
+                            "distance that it tells ({})",
+                            by));
         if (any(&DicomHeader::isLossy)) notes.push_back("the values were compressed with loss");
         if (any(&DicomHeader::isOverview)) notes.push_back("this is an overview picture (localizer)");
         if (group_.wobble > kWobbleTold)

@@ -83,7 +83,7 @@ class FileSet {
     [[nodiscard]] std::size_t head(std::size_t index, void* to, std::size_t count) const;
     /// The whole file; throws core::Error where it is larger.
     [[nodiscard]] std::vector<std::byte> bytes(std::size_t index, std::uint64_t limitBytes) const;
-    /// In the folder of `beside`; names that lead elsewhere are never found.
+    /// In the folder of `beside`; names that lead elsewhere are never found, links that do throw core::Error.
     [[nodiscard]] std::optional<std::size_t> find(std::string_view beside, std::string_view name) const;
     /// True where the one file was named, not found in a folder or an archive.
     [[nodiscard]] bool isNamed(std::size_t index) const { return named_ && *named_ == index; }

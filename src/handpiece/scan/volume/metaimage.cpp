@@ -2,6 +2,7 @@
 // MetaImage: .mha with its values inside, .mhd with a file of them beside it. https://itk.org/Wiki/MetaIO/Documentation
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
 
 #include "handpiece/scan/volume/header_text.h"
@@ -91,6 +92,9 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
         throw wrong(fmt::format("values of the type \"{}\" are not read", shown(field({"ElementType"}))),
                     "save it as MET_SHORT, MET_USHORT, MET_UCHAR or MET_FLOAT");
     samples.type = *type;
+    if (const std::string binary = lowered(field({"BinaryData"})); binary == "false" || binary == "0" || binary == "no")
+        throw wrong("its values are written as text (BinaryData = False), which is not read",
+                    "save it with binary values");
     samples.isBigEndian = flag({"BinaryDataByteOrderMSB", "ElementByteOrderMSB"});
     samples.orderRemedy =
         fmt::format("set \"BinaryDataByteOrderMSB = {}\" in its header", samples.isBigEndian ? "False" : "True");
@@ -112,10 +116,15 @@ Candidate openMetaImage(const Files& files, std::size_t index) {
     }
 
     core::Mat3 axes = core::Mat3::Identity();
-    if (const std::vector<double> m = numbers({"TransformMatrix", "Rotation", "Orientation"}); m.size() == 9) {
-        for (int axis = 0; axis < 3; ++axis)
-            for (int i = 0; i < 3; ++i)
-                axes(i, axis) = m[static_cast<std::size_t>(3 * axis + i)];
+    if (const std::string matrix = field({"TransformMatrix", "Rotation", "Orientation"}); !matrix.empty()) {
+        const std::vector<std::string_view> m = wordsOf(matrix);
+        for (std::size_t n = 0; n < 9; ++n) {
+            const std::optional<double> value = m.size() == 9 ? numberOf(m[n]) : std::nullopt;
+            if (!value || !std::isfinite(*value))
+                throw wrong("its TransformMatrix is not nine numbers", "write it as nine numbers, or save it again");
+            axes(static_cast<int>(n % 3), static_cast<int>(n / 3)) = *value;
+        }
+        if (axes.colwise().norm().minCoeff() == 0.0) throw wrong("one direction of its TransformMatrix is 0 0 0");
     } else {
         out.sideProblem = "its header tells no TransformMatrix";
     }

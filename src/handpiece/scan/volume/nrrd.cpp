@@ -115,11 +115,34 @@ std::vector<LabelName> segmentNames(const std::map<std::string, std::string>& re
     return names;
 }
 
-double mmOf(const std::string& unit) {
-    if (unit == "um" || unit == "µm" || unit == "micron" || unit == "microns" || unit == "micrometer") return 1e-3;
-    if (unit == "cm") return 10.0;
-    if (unit == "m") return 1000.0;
-    return 1.0;
+std::optional<double> mmOf(std::string_view unit) {
+    static const std::map<std::string, double> units{
+        {"um", 1e-3},         {"\xc2\xb5m", 1e-3},  {"\xce\xbcm", 1e-3},   {"micron", 1e-3},      {"microns", 1e-3},
+        {"micrometer", 1e-3}, {"micrometre", 1e-3}, {"micrometers", 1e-3}, {"micrometres", 1e-3}, {"mm", 1.0},
+        {"millimeter", 1.0},  {"millimetre", 1.0},  {"millimeters", 1.0},  {"millimetres", 1.0},  {"cm", 10.0},
+        {"centimeter", 10.0}, {"centimetre", 10.0}, {"centimeters", 10.0}, {"centimetres", 10.0}, {"m", 1000.0},
+        {"meter", 1000.0},    {"metre", 1000.0},    {"meters", 1000.0},    {"metres", 1000.0},    {"in", 25.4},
+        {"inch", 25.4},       {"inches", 25.4},     {"nm", 1e-6},          {"nanometers", 1e-6},  {"", 1.0}};
+    const auto found = units.find(lowered(trimmed(unit)));
+    return found == units.end() ? std::nullopt : std::optional(found->second);
+}
+
+/// Millimetres of each axis; what is not said is in millimetres. A unit that is not known is put into `unknown`.
+core::Vec3 unitsOf(std::string_view text, std::string& unknown) {
+    core::Vec3 mm = core::Vec3::Ones();
+    std::size_t at = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::size_t open = text.find('"', at),
+                          close = open == std::string_view::npos ? open : text.find('"', open + 1);
+        if (close == std::string_view::npos) break;
+        const std::string_view unit = text.substr(open + 1, close - open - 1);
+        at = close + 1;
+        if (const auto known = mmOf(unit))
+            mm[axis] = *known;
+        else
+            unknown = shown(unit);
+    }
+    return mm;
 }
 
 }  // namespace
@@ -236,10 +259,8 @@ Candidate openNrrd(const Files& files, std::size_t index) {
 
     const std::string space = lowered(field({"space"}));
     const std::optional<core::Vec3> flip = toLps(space);
-    double unit = 1.0;
-    if (const std::string units = field({"space units", "units"}); !units.empty())
-        if (const std::size_t quote = units.find('"'); quote != std::string::npos)
-            unit = mmOf(units.substr(quote + 1, units.find('"', quote + 1) - quote - 1));
+    std::string unknownUnit;
+    const core::Vec3 unit = unitsOf(field({"space units", "units"}), unknownUnit);
     if (const std::string directions = field({"space directions"}); !directions.empty()) {
         const std::vector<std::string_view> parts = vectorsOf(directions);
         core::Mat3 neighbours;
@@ -247,25 +268,29 @@ Candidate openNrrd(const Files& files, std::size_t index) {
         for (int axis = 0; axis < 3; ++axis) {
             const auto v = vectorOf(parts[static_cast<std::size_t>(axis)]);
             if (!v) throw wrong("its space directions are no vectors");
-            neighbours.col(axis) = unit * v->cwiseProduct(flip.value_or(core::Vec3::Ones()));
+            neighbours.col(axis) = unit.cwiseProduct(*v).cwiseProduct(flip.value_or(core::Vec3::Ones()));
         }
         setVectors(out, neighbours);
         if (!flip)
             out.sideProblem = space.empty() ? "its header does not name the space of its directions"
                                             : "the space that its header names is not known";
         if (const auto origin = vectorOf(field({"space origin"})); origin && origin->allFinite())
-            out.grid.originMm = unit * origin->cwiseProduct(flip.value_or(core::Vec3::Ones()));
+            out.grid.originMm = unit.cwiseProduct(*origin).cwiseProduct(flip.value_or(core::Vec3::Ones()));
     } else {
         out.sideProblem = "its header tells no space directions";
         const std::vector<std::string_view> spacings = wordsOf(fields["spacings"]);
         if (spacings.size() == 3) {
             core::Vec3 spacing;
             for (int i = 0; i < 3; ++i)
-                spacing[i] = unit * numberOf(spacings[static_cast<std::size_t>(i)]).value_or(0.0);
+                spacing[i] = unit[i] * numberOf(spacings[static_cast<std::size_t>(i)]).value_or(0.0);
             setSpacing(out, spacing);
         } else {
             out.spacingProblem = "its header tells no spacing";
         }
+    }
+    if (!unknownUnit.empty()) {
+        out.spacingProblem = fmt::format("its unit \"{}\" is not known", unknownUnit);
+        out.grid.originMm = core::Vec3::Zero();
     }
     setSamples(out, std::move(samples));
     return out;

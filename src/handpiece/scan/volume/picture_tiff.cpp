@@ -3,6 +3,7 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -190,6 +191,66 @@ std::optional<RawStack> rawStackOf(TIFF* tiff, const Page& page, const Input& in
     return stack;
 }
 
+/// How often one place is there, and how many pages that makes, by ImageJ's description or OME's.
+struct StackLayout {
+    double channels = 1, times = 1;
+    std::optional<double> pages;
+};
+StackLayout layoutOf(TIFF* tiff, const Page& page) {
+    StackLayout layout;
+    layout.channels = numberOf(imageJValue(tiff, "\nchannels=")).value_or(1.0);
+    layout.times = numberOf(imageJValue(tiff, "\nframes=")).value_or(1.0);
+    layout.pages = numberOf(imageJValue(tiff, "\nimages="));
+    const char* text = nullptr;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &text) != 1 || !text) return layout;
+    std::string_view pixels(text);
+    const std::size_t at = pixels.find("Pixels ");
+    if (pixels.find("<OME") == std::string_view::npos || at == std::string_view::npos) return layout;
+    pixels = pixels.substr(at, pixels.find('>', at) - at);
+    const auto value = [&](std::string_view key) -> std::optional<double> {
+        const std::size_t begin = pixels.find(key);
+        if (begin == std::string_view::npos) return {};
+        const std::string_view rest = pixels.substr(begin + key.size());
+        return numberOf(rest.substr(0, rest.find('"')));
+    };
+    // The parts of a colour are channels too, and lie in one page.
+    layout.channels = value(" SizeC=\"").value_or(1.0) / (page.samples >= 3 ? page.samples : 1);
+    layout.times = value(" SizeT=\"").value_or(1.0);
+    if (const auto slices = value(" SizeZ=\"")) layout.pages = *slices * std::max(1.0, layout.channels) * layout.times;
+    return layout;
+}
+
+/// Pages that are no slices one after another, and pages that are not there.
+void checkLayout(const StackLayout& layout, int pages, const Input& input) {
+    if (pages < 2) return;
+    if (layout.channels > 1.0 || layout.times > 1.0)
+        throw core::Error(
+            fmt::format("its {} pages are {:g} channel{} and {:g} time point{}, not the slices of one scan", pages,
+                        std::max(1.0, layout.channels), layout.channels > 1.0 ? "s" : "", layout.times,
+                        layout.times > 1.0 ? "s" : ""),
+            input.where(),
+            "save one channel and one time point; if they are slices, say so in ImageJ (Image, Properties) and save it "
+            "again");
+    if (layout.pages && *layout.pages > pages)
+        throw damagedPicture(input,
+                             fmt::format("it says that it has {:g} pages, and {} are there", *layout.pages, pages));
+}
+
+/// True where the directory at `at` names another behind it.
+bool namesAnother(Input& input, std::uint64_t at, bool isBigEndian) {
+    const auto number = [&](std::uint64_t from, std::size_t bytes) {
+        std::array<std::uint8_t, 8> raw{};
+        (void)input.readAt(from, raw.data(), bytes);
+        std::uint64_t value = 0;
+        for (std::size_t i = 0; i < bytes; ++i)
+            value = value << 8 | raw[isBigEndian ? i : bytes - 1 - i];
+        return value;
+    };
+    constexpr std::uint64_t kBigTiff = 43;
+    if (number(2, 2) == kBigTiff) return number(at + 8 + 20 * number(at, 8), 8) != 0;
+    return number(at + 2 + 12 * number(at, 2), 4) != 0;
+}
+
 /// It writes their spacing as text and resolution.
 std::optional<core::Vec3> imageJSpacing(TIFF* tiff) {
     float x = 0.0f, y = 0.0f;
@@ -336,9 +397,12 @@ PictureInfo tiffInfo(Input& input) {
         if (info.spacingMm) std::swap(info.spacingMm->x(), info.spacingMm->y());
         if (info.densityMm) std::swap(info.densityMm->x(), info.densityMm->y());
     }
+    const StackLayout layout = layoutOf(tiff.get(), first);
     bool hasOneDirectory = true;
+    std::uint64_t last = TIFFCurrentDirOffset(tiff.get());
     while (TIFFReadDirectory(tiff.get()) == 1) {
         hasOneDirectory = false;
+        last = TIFFCurrentDirOffset(tiff.get());
         const Page page = pageOf(tiff.get(), input);
         if (page.isReduced) continue;
         if (page.seenColumns() != info.columns || page.seenRows() != info.rows)
@@ -348,10 +412,14 @@ PictureInfo tiffInfo(Input& input) {
         if (++info.pages > kMaxPages) throw damagedPicture(input, "it claims too many pages");
     }
     if (!stream.text.empty()) throw damagedPicture(input, stream.text);
+    // libtiff ends silently where pages lead back to one that was there.
+    if (namesAnother(input, last, TIFFIsBigEndian(tiff.get()) != 0))
+        throw damagedPicture(input, fmt::format("behind its page {} comes one that was there before", info.pages));
     if (hasOneDirectory) {
         TIFFSetDirectory(tiff.get(), 0);
         if (const std::optional<RawStack> stack = rawStackOf(tiff.get(), first, input)) info.pages = stack->pages;
     }
+    checkLayout(layout, info.pages, input);
     return info;
 }
 

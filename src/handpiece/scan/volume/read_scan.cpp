@@ -70,7 +70,7 @@ Series describe(const Candidate& candidate, bool isReversed = false) {
     else if (!series.isSideKnown)
         series.notes.push_back(
             fmt::format("left and right may be swapped: {}. If the tooth is a mirror image, have the slices read from "
-                        "the other end (--reverse-slices)",
+                        "the other end",
                         why));
     series.size = candidate.grid.size;
     series.slices = candidate.grid.size[2];
@@ -293,6 +293,10 @@ void setVectors(Candidate& candidate, const core::Mat3& neighboursMm) {
     core::Vec3 normal = i.cross(j).normalized();
     if (normal.dot(w) < 0.0) normal = -normal;
     const double along = normal.dot(w);
+    constexpr double kFlat = 1e-3;
+    if (along < kFlat * w.norm())
+        throw core::Error("its directions are damaged: the slices follow each other within their own plane",
+                          candidate.where, "save it again in the program that made it");
     setSpacing(candidate, {u.norm(), v.norm(), along});
     if (!candidate.spacingProblem.empty()) return;
     candidate.grid.axes.col(0) = i;
@@ -526,7 +530,8 @@ Scan load(const Candidate& candidate, const ReadSettings& settings, const core::
     readWindow(candidate, inFile, settings.isLabels, scan.volume.values.data(), core::part(progress, 0.0, 0.95));
     if (settings.reverseSlices) reverseSlices(scan.volume);
     if (const std::size_t bad = removeNonNumbers(scan.volume.values); bad > 0)
-        scan.series.notes.push_back(fmt::format("{} values are no numbers and were read as 0", bad));
+        scan.series.notes.push_back(bad == 1 ? std::string("1 value is no number and was read as 0")
+                                             : fmt::format("{} values are no numbers and were read as 0", bad));
     makeRightHanded(scan.volume, step);
     straighten(scan, step, settings.limitBytes, core::part(progress, 0.95, 1.0));
     scan.series.size = grid.size;

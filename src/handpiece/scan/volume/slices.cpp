@@ -124,14 +124,19 @@ std::optional<double> valueIn(std::string_view text, std::string_view key) {
     return {};
 }
 
+struct LogScale {
+    double mm = 0.0;    ///< a pixel's size
+    double step = 1.0;  ///< from slice to slice, in pixels; NRecon may write only every so many slices
+};
+
 /// A voxel's size by the log that Skyscan's scanner and NRecon leave beside the slices; nothing where there is none,
 /// or where several disagree. Only its size is looked for.
-std::optional<double> logMm(const FileSet& files, const std::string& firstName) {
+std::optional<LogScale> logScale(const FileSet& files, const std::string& firstName) {
     constexpr std::uint64_t kMaxLog = 1 << 20;
     constexpr std::size_t kMaxLogs = 64;
     constexpr double kSame = 1e-3;
     const std::string_view own = std::string_view(firstName).substr(folderOf(firstName).size());
-    std::optional<double> found;
+    std::optional<LogScale> found;
     std::size_t longest = 0, seen = 0;
     bool isSplit = false;
     for (std::size_t i = 0; i < files.entries().size() && seen < kMaxLogs; ++i) {
@@ -147,9 +152,11 @@ std::optional<double> logMm(const FileSet& files, const std::string& firstName) 
         }
         const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
         // Of what was reconstructed, which may be coarser than what was taken.
-        std::optional<double> um;
-        if (const std::size_t part = text.find("[Reconstruction]"); part != std::string_view::npos)
+        std::optional<double> um, step;
+        if (const std::size_t part = text.find("[Reconstruction]"); part != std::string_view::npos) {
             um = valueIn(text.substr(part), "pixel size (um)");
+            step = valueIn(text.substr(part), "section to section step");
+        }
         if (!um) um = valueIn(text, "image pixel size (um)");
         if (!um || !isSpacing(*um * 1e-3)) continue;
         // The one that has the slices' own name counts before others.
@@ -157,25 +164,53 @@ std::optional<double> logMm(const FileSet& files, const std::string& firstName) 
         stem.remove_suffix(4);
         const std::size_t fits = own.starts_with(stem) ? stem.size() : 0;
         if (found && fits < longest) continue;
-        isSplit = found && fits == longest && (isSplit || std::abs(*um * 1e-3 - *found) > kSame * *found);
-        if (!isSplit) found = *um * 1e-3;
+        const LogScale one{*um * 1e-3, step.value_or(1.0)};
+        isSplit = found && fits == longest &&
+                  (isSplit || std::abs(one.mm - found->mm) > kSame * found->mm || one.step != found->step);
+        if (!isSplit) found = one;
         longest = fits;
     }
     return isSplit ? std::nullopt : found;
 }
 
-/// Where nobody says it: by the scanner's log, else by the pictures' own density.
-void findSpacing(const FileSet& files, const std::string& firstName, const std::vector<PictureInfo>& infos,
-                 Candidate& c) {
-    if (c.spacingProblem.empty()) return;
-    std::vector<std::string>& notes = c.series.notes;
-    if (const std::optional<double> mm = logMm(files, firstName)) {
-        c.spacingProblem.clear();
-        setSpacing(c, core::Vec3::Constant(*mm));
-        notes.push_back(
-            fmt::format("the size of a voxel, {:.6g} mm, is that of the scanner's log beside the slices", *mm));
+/// Slices' distance in pixels by the log and by the slices' numbers, which count all slices or those that were written;
+/// nothing where the two cannot both be right.
+std::optional<double> stepOf(double logStep, std::int64_t numberStep) {
+    const auto gap = static_cast<double>(numberStep);
+    if (!(logStep >= 1.0) || !std::isfinite(logStep)) return {};
+    if (gap == 1.0) return logStep;
+    const double times = gap / logStep;
+    return times == std::round(times) ? std::optional(gap) : std::nullopt;
+}
+
+void setLogScale(const LogScale& log, std::int64_t numberStep, Candidate& c) {
+    const std::optional<double> step = stepOf(log.step, numberStep);
+    if (!step) {
+        c.spacingProblem = fmt::format(
+            "the scanner's log tells the size of a pixel ({:.6g} mm), but its distance of the slices ({:g} pixels) and "
+            "their numbers ({} apart) do not fit each other",
+            log.mm, log.step, numberStep);
+        c.grid.spacingMm.head<2>() = core::Vec2::Constant(log.mm);
         return;
     }
+    c.spacingProblem.clear();
+    setSpacing(c, core::Vec3(log.mm, log.mm, log.mm * *step));
+    c.series.notes.push_back(
+        *step == 1.0
+            ? fmt::format("the size of a voxel, {:.6g} mm, is that of the scanner's log beside the slices", log.mm)
+            : fmt::format("the size of a pixel, {:.6g} mm, is that of the scanner's log beside the slices, which lie "
+                          "{:g} pixels ({:.6g} mm) apart {}",
+                          log.mm, *step, log.mm * *step,
+                          log.step == 1.0 ? "by their numbers: give the spacing where that is wrong" : "by this log"));
+}
+
+/// Where nobody says it: by the scanner's log, else by the pictures' own density. `numberStep`: from slice to slice, by
+/// their names.
+void findSpacing(const FileSet& files, const std::string& firstName, const std::vector<PictureInfo>& infos,
+                 std::int64_t numberStep, Candidate& c) {
+    if (c.spacingProblem.empty()) return;
+    std::vector<std::string>& notes = c.series.notes;
+    if (const std::optional<LogScale> log = logScale(files, firstName)) return setLogScale(*log, numberStep, c);
     constexpr double kSame = 1e-3;
     const std::optional<core::Vec2> density = infos.front().densityMm;
     if (!density) return;
@@ -206,9 +241,9 @@ void findSpacing(const FileSet& files, const std::string& firstName, const std::
 
 /// What a scan.toml beside the pictures says; scale of their values.
 std::pair<double, double> describeBeside(const FileSet& files, const std::string& name, Candidate& c) {
-    const auto toml = files.find(name, "scan.toml");
-    if (!toml) return {1.0, 0.0};
     try {
+        const auto toml = files.find(name, "scan.toml");
+        if (!toml) return {1.0, 0.0};
         const Description d = readDescription(files, *toml);
         if (!d.file.empty()) return {1.0, 0.0};  // of raw numbers that lie here too
         apply(d, c);
@@ -242,7 +277,7 @@ Candidate pagesOf(const Files& files, std::size_t file, const PictureInfo& info)
     }
     if (info.isColour) c.series.notes.push_back("colour pictures were turned to grey");
     const std::pair<double, double> by = describeBeside(*files, name, c);
-    findSpacing(*files, name, {info}, c);
+    findSpacing(*files, name, {info}, 1, c);
     const std::size_t each = static_cast<std::size_t>(info.columns) * static_cast<std::size_t>(info.rows);
     c.slice = [files, file, info, by, each](int k, float* to) {
         Input in = files->open(file);
@@ -402,7 +437,8 @@ std::vector<Candidate> findSlices(const Files& files, const std::vector<std::siz
         if (std::any_of(infos.begin(), infos.end(), [](const PictureInfo& i) { return i.isColour; }))
             c.series.notes.push_back("colour pictures were turned to grey");
         const std::pair<double, double> by = describeBeside(*files, firstName, c);
-        findSpacing(*files, firstName, infos, c);
+        const bool isNumbered = slices.size() > 1 && slices[0].number && slices[1].number;
+        findSpacing(*files, firstName, infos, isNumbered ? *slices[1].number - *slices[0].number : 1, c);
         const auto shared = std::make_shared<const std::vector<Slice>>(slices);
         c.slice = [files, shared, info, by](int k, float* to) {
             const Slice& slice = (*shared)[static_cast<std::size_t>(k)];

@@ -571,7 +571,8 @@ TEST(Renderer, FromOcclusalTheOtherJawIsLeftOutWhereTheJawsAreClosed) {
     const Look look = plainLook();
     Camera over = above(), buccal = fromMesial();
     over.eyeMm = {0.0, -3.0, 60.0};
-    buccal.eyeMm = {0.0, -40.0, 4.0};
+    buccal.eyeMm = {0.0, -60.0, 4.0};
+    buccal.targetMm = {0.0, 0.0, 4.0};
     const Image image = picture(renderer, over, look, withoutBur());
     EXPECT_FALSE(isRed(at(image, over, {1.0, 1.0, 2.0})));
     EXPECT_GT(brightness(at(image, over, {1.0, 1.0, 2.0})), 250);
@@ -580,7 +581,7 @@ TEST(Renderer, FromOcclusalTheOtherJawIsLeftOutWhereTheJawsAreClosed) {
     expectSame(picture(renderer, over, look, withoutBur()), image);
     // From buccal both jaws are seen.
     renderer.setScenery(closed);
-    EXPECT_TRUE(isRed(at(picture(renderer, buccal, look, withoutBur()), buccal, {0.0, -6.0, 12.0})));
+    EXPECT_TRUE(isRed(at(picture(renderer, buccal, look, withoutBur()), buccal, {0.0, -6.0, 10.0})));
 }
 
 TEST(Renderer, AnAdjacentToothThatWasCutIsLeftOutToo) {

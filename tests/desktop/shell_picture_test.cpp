@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person at work meets around the picture: it stays where it is, and what is told of the tooth is so.
+#include <QCheckBox>
 #include <QComboBox>
 #include <QHeaderView>
 #include <QLabel>
@@ -13,6 +14,7 @@
 #include "desktop/features/drill/bur_list.h"
 #include "desktop/features/drill/drill_bar.h"
 #include "desktop/features/drill/welcome_strip.h"
+#include "desktop/features/files/mend_dialog.h"
 #include "desktop/framework/job_strip.h"
 #include "desktop/widgets/force_gauge.h"
 #include "desktop/widgets/notice_bar.h"
@@ -203,6 +205,30 @@ TEST_F(PictureTest, AnOpenSurfaceIsMendedWhenAskedAndWrittenWhereOneSays) {
     EXPECT_FALSE(window().errorDialog()->findChild<QAbstractButton*>("errorMend"));
 }
 
+TEST_F(PictureTest, AnOpenArchIsOfferedAFlatBase) {
+    geometry::TriangleMesh open = eggTooth(46).outer;
+    const double middleMm = open.bounds().centre().z();
+    std::erase_if(open.triangles, [&](const geometry::Triangle& t) { return open.vertices[t[0]].z() < middleMm; });
+    geometry::writeStl(at("half.stl"), open);
+    MendDialog dialog(at("half.stl"), nullptr);
+    dialog.setAttribute(Qt::WA_DeleteOnClose, false);
+    dialog.show();
+    const auto* text = dialog.findChild<QLabel*>("mendText");
+    auto* base = dialog.findChild<QCheckBox*>("mendBase");
+    const auto* save = dialog.findChild<QAbstractButton*>("mendSave");
+    ASSERT_TRUE(text && base && save);
+    EXPECT_FALSE(base->isVisible());
+    ASSERT_TRUE(waitFor([&] { return save->isEnabled(); }));
+    EXPECT_TRUE(text->text().contains("flat base")) << text->text().toStdString();
+    ASSERT_TRUE(base->isVisible());
+    base->click();
+    EXPECT_FALSE(save->isEnabled());
+    ASSERT_TRUE(waitFor([&] { return save->isEnabled(); })) << text->text().toStdString();
+    EXPECT_TRUE(text->text().contains("Stood on a flat base of")) << text->text().toStdString();
+    EXPECT_FALSE(text->text().contains("Much of this surface")) << text->text().toStdString();
+    EXPECT_TRUE(base->isVisible() && base->isEnabled());
+}
+
 TEST_F(PictureTest, WhatWasLeftOutOfAFileIsNoticed) {
     geometry::writeStl(at("glued.stl"), eggTooth(46).outer);
     // A second file behind the first.
@@ -217,6 +243,11 @@ TEST_F(PictureTest, WhatWasLeftOutOfAFileIsNoticed) {
     const QString told = window().findChild<QLabel*>("noticeText")->text();
     EXPECT_TRUE(told.contains("glued.stl") && told.contains("first of 2 STL files")) << told.toStdString();
     EXPECT_TRUE(waitFor([this] { return simulator().document().name == "glued" && !simulator().isBusy(); }));
+    // Of another file it says nothing.
+    geometry::writeStl(at("whole.stl"), eggTooth(46).outer);
+    window().openFile(own_.filePath("whole.stl"));
+    EXPECT_TRUE(waitFor([this] { return simulator().document().name == "whole" && !simulator().isBusy(); }));
+    EXPECT_NE(notices->current(), "file-left-out");
 }
 
 TEST_F(PictureTest, AnOwnBurHasItsPictureAndItsName) {

@@ -1314,6 +1314,14 @@
         <translation>交差していて置き換えた面：%1。</translation>
     </message>
     <message>
+        <source>Stood on a flat base of %1 mm².</source>
+        <translation>平らな基底部を付けました：%1 mm²。</translation>
+    </message>
+    <message>
+        <source>Much of this surface is new. The border of an open arch is better stood on a flat base.</source>
+        <translation>新しい面が大きな割合を占めています。開いた歯列弓の縁には、平らな基底部を付けるほうが適しています。</translation>
+    </message>
+    <message>
         <source>Nothing had to be changed but where vertices meet.</source>
         <translation>頂点の結合のほかに変更はありません。</translation>
     </message>
@@ -5536,6 +5544,14 @@ openhaptics:Left Arm, or forcedimension:2</source>
     <message>
         <source>Progress</source>
         <translation>進捗</translation>
+    </message>
+    <message>
+        <source>Stand it on a flat base</source>
+        <translation>平らな基底部を付ける</translation>
+    </message>
+    <message>
+        <source>The longest border gets walls and a floor; other holes are closed as usual</source>
+        <translation>最も長い縁に壁と底を付け、ほかの穴は通常どおり閉じます</translation>
     </message>
     <message>
         <source>Save as and open...</source>

@@ -83,6 +83,8 @@ FilesFeature::FilesFeature(const FeatureContext& context)
     connect(&window_, &MainWindow::problemShown, this, &FilesFeature::offerToMend);
     window_.openers.push_back([this](const QString& path) {
         lastOpened_ = path;
+        // Of another file; showDocument() comes after this one has told.
+        window_.notices().remove(Notice::fileLeftOut);
         simulator_.open(toPath(path));
         return true;
     });
@@ -283,7 +285,10 @@ void FilesFeature::resumeLast() {
         window_.showProblem(problemById(QStringLiteral("no-attempt")));
         return;
     }
-    leave([this, file] { simulator_.open(toPath(file)); });
+    leave([this, file] {
+        window_.notices().remove(Notice::fileLeftOut);
+        simulator_.open(toPath(file));
+    });
 }
 
 void FilesFeature::save(bool underNewName, std::function<void()> then) {

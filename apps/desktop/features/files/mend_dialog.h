@@ -11,6 +11,7 @@
 #include "desktop/framework/job.h"
 #include "handpiece/base/geometry/repair.h"
 
+class QCheckBox;
 class QLabel;
 class QProgressBar;
 class QPushButton;
@@ -19,6 +20,9 @@ namespace handpiece::desktop {
 
 /// Whether mending helps against this problem (Problem::id) of this file.
 [[nodiscard]] bool canMend(const QString& problemId, const std::filesystem::path& file);
+
+/// Whether a hole was closed that is more than a hole: as the border of an open arch.
+[[nodiscard]] bool closesMuch(const geometry::RepairReport& report);
 
 /// What was done to the surface, a sentence a line.
 [[nodiscard]] QString mendWords(const geometry::RepairReport& report);
@@ -39,11 +43,14 @@ class MendDialog : public QDialog {
 
   private:
     struct Mended;
+    void mend();  ///< anew where the base is ticked or unticked
     void tell(const geometry::RepairReport& report);
 
+    std::filesystem::path file_;
     std::shared_ptr<Mended> mended_;
     QLabel* text_;
     QProgressBar* bar_;
+    QCheckBox* base_;  ///< shown once a hole is closed that asks for it
     QPushButton* save_;
     std::unique_ptr<Job> job_;
 };

@@ -543,7 +543,8 @@ TEST(ToothForm, SeedsDifferWithinTheSpreads) {
             EXPECT_NEAR(form.mesiodistalMm(), mean.mesiodistalMm(), 2.5 * kSpreadAcross * mean.mesiodistalMm())
                 << fdi << " " << seed;
             EXPECT_NEAR(form.buccolingualMm(), mean.buccolingualMm(), 2.5 * kSpreadAcross * mean.buccolingualMm());
-            EXPECT_NEAR(form.crownHeightMm(), mean.crownHeightMm(), 2.5 * kSpreadCrown * mean.crownHeightMm());
+            // No more than a fifth; wear takes the same from all.
+            EXPECT_NEAR(form.crownHeightMm(), mean.crownHeightMm(), 0.2 * mean.crownHeightMm() + 0.1);
             EXPECT_NEAR(form.rootLengthMm(), mean.rootLengthMm(), 2.5 * kSpreadRoot * mean.rootLengthMm());
         }
         std::sort(widths.begin(), widths.end());

@@ -167,6 +167,17 @@ void addFacets(Spec& spec, std::uint64_t seed, double ageYears) {
     }
 }
 
+/// What all crowns of a mouth share, a standard deviation, and what the clipping of draws takes from spreads.
+constexpr double kMouth = 0.045, kClipped = 1.04;
+
+/// How tall a crown is, a share of the mean: as large as the mouth's teeth are, as tall as its crowns are for their
+/// widths, and the tooth's own. No draw is beyond 2, their sum no farther than two of its own standard deviations.
+double tallness(double mouthsSize, Draws& mouth, Draws& tooth) {
+    constexpr double kMouthsTallness = 0.07, kOwn = 0.055, kMost = 0.2;
+    const double tall = 1.0 + kClipped * kMouthsTallness * mouth.normal(), own = 1.0 + kClipped * kOwn * tooth.normal();
+    return std::clamp(mouthsSize * tall * own, 1.0 - kMost, 1.0 + kMost);
+}
+
 Spec specFor(int fdi, const Patient& patient) {
     const bool upper = fdi < 30;
     Spec spec = specOf(upper, fdi % 10, patient);
@@ -175,13 +186,12 @@ Spec specFor(int fdi, const Patient& patient) {
     Draws mouth(patient.seed, isAverage);
     Draws tooth(patient.seed * 1000003 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8)), isAverage);
     // Widths of two teeth of a mouth: r about 0.5; roots go their own way (docs/anatomy.md, Held against people).
-    constexpr double kMouth = 0.045, kClipped = 1.04;  // a draw beyond 2 is 2, which narrows the spread
     const double all = 1.0 + kClipped * kMouth * mouth.normal(), longer = 1.0 + 0.045 * mouth.normal();
     const auto ofItsOwn = [&](double spread) {
         return 1.0 + kClipped * std::sqrt(spread * spread - kMouth * kMouth) * tooth.normal();
     };
     const double x = all * ofItsOwn(spec.spreads.mesiodistal), y = all * ofItsOwn(spec.spreads.buccolingual);
-    const double crown = all * (1.0 + 0.02 * tooth.normal()), root = longer * (1.0 + 0.04 * tooth.normal());
+    const double crown = tallness(all, mouth, tooth), root = longer * (1.0 + 0.04 * tooth.normal());
     scale(spec, x, y, crown, root);
     // No two mouths have the same wrinkles or the same bends of the roots; the average one has wrinkles too.
     const std::uint64_t own = patient.seed * 9176263 + static_cast<std::uint64_t>(fdi % 10 + (upper ? 0 : 8));

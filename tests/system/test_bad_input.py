@@ -165,12 +165,22 @@ class BadInput(SystemTest):
         self.refused("bench", "--faces", "5", mentions=["--faces", "2000"])
         for arguments in (["make", "mouth", "--faces", "99999999999"], ["make", "mouth", "--faces", "5"]):
             self.refused(*arguments, "--out", self.folder / "t", mentions=["--faces", "2000"])
+        self.refused("make", "bur", "--out", self.folder / "b.stl", mentions=["--shape"])
+        self.refused("make", "bur", "--name", "330", "--out", self.folder / "b.doc", mentions=["b.doc"])
+        for arguments, word in ((["--rate", "0"], "--rate"), (["--rate", "-5"], "--rate"), (["--rate", "nan"], "--rate"),
+                                (["--duration", "-1"], "--duration"), (["--voxel", "0"], "--voxel"),
+                                (["--speed", "0"], "speed"), (["--depth", "nan"], "depth"), (["--load", "nan"], "depth"),
+                                (["--delay", "-1"], "delay"), (["--stiffness", "-1"], "stiffness"),
+                                (["--at", "500", "500"], "meets")):
+            with self.subTest(arguments=arguments):
+                self.run_refused(*arguments, mentions=[word])
 
     def test_negative_numbers_where_none_can_be(self):
         # -5 was read as 18446744073709551611.
         out = self.folder / "t"
         for option, arguments in (("--faces", ["make", "mouth", "--faces", "-5", "--out", out]),
                                   ("--seed", ["make", "tooth", "--seed", "-1", "--out", out]),
+                                  ("--threads", ["scan", "case", self.tooth, "--threads", "-1", "--out", out]),
                                   ("--faces", ["scan", "case", self.tooth, "--faces", "-1", "--out", out])):
             with self.subTest(arguments=arguments):
                 done = run(*arguments)
@@ -190,15 +200,6 @@ class BadInput(SystemTest):
         self.assertNotIn("\x1b", told)
         (case / "case.toml").write_text(text + 'file = "o.stl\\u0000x"\ntissue = "enamel"\n')
         self.refused("case", "info", case, mentions=["o.stl?x", "is not a file inside the case's folder"])
-        self.refused("make", "bur", "--out", self.folder / "b.stl", mentions=["--shape"])
-        self.refused("make", "bur", "--name", "330", "--out", self.folder / "b.doc", mentions=["b.doc"])
-        for arguments, word in ((["--rate", "0"], "--rate"), (["--rate", "-5"], "--rate"), (["--rate", "nan"], "--rate"),
-                                (["--duration", "-1"], "--duration"), (["--voxel", "0"], "--voxel"),
-                                (["--speed", "0"], "speed"), (["--depth", "nan"], "depth"), (["--load", "nan"], "depth"),
-                                (["--threads", "-1"], "--threads"), (["--delay", "-1"], "delay"), (["--stiffness", "-1"], "stiffness"),
-                                (["--at", "500", "500"], "meets")):
-            with self.subTest(arguments=arguments):
-                self.run_refused(*arguments, mentions=[word])
 
     def test_surfaces_that_are_no_solid(self):
         facets = box((-4, -4, -8), (4, 4, 4))

@@ -18,6 +18,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
+#include "support/dice.h"
 #include "support/random.h"
 
 namespace handpiece::geometry {
@@ -27,28 +28,6 @@ using core::Vec2;
 using core::Vec3;
 using Polygon = std::vector<std::uint32_t>;
 
-/// As many as HANDPIECE_CORPUS says, or those of every run.
-int corpusSize() {
-    const char* asked = std::getenv("HANDPIECE_CORPUS");
-    return asked != nullptr ? std::atoi(asked) : 180;
-}
-
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : generator_(seed) {}
-    [[nodiscard]] int upTo(int count) { return static_cast<int>(generator_() % static_cast<std::uint64_t>(count)); }
-    [[nodiscard]] bool once(int in) { return upTo(in) == 0; }
-    [[nodiscard]] double between(double low, double high) { return test::uniform(generator_, low, high); }
-    template <class T>
-    [[nodiscard]] T oneOf(std::initializer_list<T> choices) {
-        return *(choices.begin() + upTo(static_cast<int>(choices.size())));
-    }
-    void shuffle(std::vector<std::string>& of) { std::shuffle(of.begin(), of.end(), generator_); }
-
-  private:
-    std::mt19937_64 generator_;
-};
-
 struct Prism {
     std::vector<Vec3> vertices;  ///< the lower polygon, the upper one, the two middles
     std::vector<Polygon> polygons, triangles;
@@ -56,7 +35,7 @@ struct Prism {
 };
 
 /// Coordinates are eighths: text and float32 hold them exactly.
-Prism prism(Dice& dice) {
+Prism prism(test::Dice& dice) {
     const auto eighths = [](double v) { return std::round(8.0 * v) / 8.0; };
     const auto corners = static_cast<std::uint32_t>(5 + dice.upTo(9));
     const Vec3 middle(eighths(dice.between(-30, 30)), eighths(dice.between(-30, 30)), eighths(dice.between(-30, 30)));
@@ -112,7 +91,7 @@ std::string withEnds(const std::string& text, const std::string& end) {
     return out;
 }
 
-File binaryStl(const Prism& p, Dice& dice) {
+File binaryStl(const Prism& p, test::Dice& dice) {
     File f{"", "binary STL", false};
     std::string header(80, dice.once(2) ? ' ' : '\0');
     const std::string says =
@@ -136,7 +115,7 @@ File binaryStl(const Prism& p, Dice& dice) {
     return f;
 }
 
-File textStl(const Prism& p, Dice& dice) {
+File textStl(const Prism& p, test::Dice& dice) {
     File f{"", "ASCII STL", false};
     const bool isLoud = dice.once(3);
     const std::string indent = dice.oneOf<std::string>({"  ", "\t", "", "      "});
@@ -170,7 +149,7 @@ File textStl(const Prism& p, Dice& dice) {
     return f;
 }
 
-File ply(const Prism& p, Dice& dice) {
+File ply(const Prism& p, test::Dice& dice) {
     const int form = dice.upTo(3);  // text, little, big
     const bool isBig = form == 2, isPolygons = dice.once(2), isDouble = dice.once(2);
     const std::vector<Polygon>& faces = isPolygons ? p.polygons : p.triangles;
@@ -234,7 +213,7 @@ File ply(const Prism& p, Dice& dice) {
             fmt::format("PLY form {} {} {} polygons {}", form, count, index, isPolygons), false};
 }
 
-File obj(const Prism& p, Dice& dice) {
+File obj(const Prism& p, test::Dice& dice) {
     const bool isPolygons = dice.once(2), isNegative = dice.once(3), hasColours = dice.once(3);
     const int form = dice.upTo(4);
     const std::vector<Polygon>& faces = isPolygons ? p.polygons : p.triangles;
@@ -268,12 +247,12 @@ bool isRight(const TriangleMesh& mesh, const Prism& p) {
 
 TEST(MeshCorpus, AsOtherProgramsWriteThem) {
     const std::uint64_t seed = test::seed();
-    const int count = corpusSize();
+    const int count = test::corpusSize(180);
     int refused = 0, said = 0;
     for (int i = 0; i < count; ++i) {
-        Dice dice(seed + static_cast<std::uint64_t>(i));
+        test::Dice dice(seed + static_cast<std::uint64_t>(i));
         const Prism p = prism(dice);
-        File (*const writers[])(const Prism&, Dice&) = {binaryStl, textStl, ply, obj};
+        File (*const writers[])(const Prism&, test::Dice&) = {binaryStl, textStl, ply, obj};
         File f = writers[i % 4](p, dice);
         const std::string which = fmt::format("file {} of seed {}: {}", i, seed, f.how);
         const auto hint = i % 4 < 2 ? MeshFormat::stl : i % 4 == 2 ? MeshFormat::ply : MeshFormat::obj;

@@ -7,13 +7,13 @@
 #include <gtest/gtest.h>
 #include <nifti1_io.h>
 #include <tiffio.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <iostream>
 
 #include "scan_support.h"
+#include "support/dice.h"
 
 namespace handpiece::volume {
 namespace {
@@ -21,51 +21,12 @@ namespace {
 namespace fs = std::filesystem;
 using test::DicomMaker;
 
-/// As many as HANDPIECE_CORPUS says, or those of every run.
-int corpusSize() {
-    const char* asked = std::getenv("HANDPIECE_CORPUS");
-    return asked != nullptr ? std::atoi(asked) : 320;
-}
-
-class Dice {
-  public:
-    explicit Dice(std::uint64_t seed) : generator_(seed) {}
-    [[nodiscard]] int upTo(int count) { return static_cast<int>(generator_() % static_cast<std::uint64_t>(count)); }
-    [[nodiscard]] bool once(int in) { return upTo(in) == 0; }
-    [[nodiscard]] int sign() { return once(2) ? -1 : 1; }
-    template <class T>
-    [[nodiscard]] T oneOf(std::initializer_list<T> choices) {
-        return *(choices.begin() + upTo(static_cast<int>(choices.size())));
-    }
-    template <class T>
-    void shuffle(std::vector<T>& of) {
-        std::shuffle(of.begin(), of.end(), generator_);
-    }
-
-  private:
-    std::mt19937_64 generator_;
-};
-
 /// What a maker says of what it has written.
 struct Made {
     std::string how;
     int side = 0;  ///< 0: nobody can tell
     double slope = 1.0, intercept = 0.0;
 };
-
-std::string gzipped(const std::string& bytes, int windowBits) {
-    std::string out(bytes.size() + 1000, '\0');
-    z_stream z{};
-    deflateInit2(&z, 6, Z_DEFLATED, windowBits, 8, Z_DEFAULT_STRATEGY);
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    z.avail_in = static_cast<uInt>(bytes.size());
-    z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(out.size());
-    deflate(&z, Z_FINISH);
-    out.resize(z.total_out);
-    deflateEnd(&z);
-    return out;
-}
 
 class Corpus : public testing::Test {
   protected:
@@ -83,7 +44,7 @@ class Corpus : public testing::Test {
     }
     void put(const std::string& name, const std::string& bytes) const { test::writeBytes(at_ / name, bytes); }
 
-    [[nodiscard]] Made dicomSlices(Dice& dice) const {
+    [[nodiscard]] Made dicomSlices(test::Dice& dice) const {
         Made made{"DICOM", 0, dice.oneOf({1.0, 2.0, 0.5}), dice.oneOf({0.0, -1024.0, 10.0})};
         DicomMaker d;
         d.columns = 24;
@@ -138,7 +99,7 @@ class Corpus : public testing::Test {
         return made;
     }
 
-    [[nodiscard]] Made dicomFrames(Dice& dice) const {
+    [[nodiscard]] Made dicomFrames(test::Dice& dice) const {
         Made made{"DICOM in one file", 0};
         DicomMaker d;
         d.columns = 24;
@@ -184,7 +145,7 @@ class Corpus : public testing::Test {
         }
     }
 
-    [[nodiscard]] Made nrrd(Dice& dice) const {
+    [[nodiscard]] Made nrrd(test::Dice& dice) const {
         Made made{"NRRD"};
         const int type = dice.upTo(6), encoding = dice.upTo(3);
         const bool isBig = dice.once(2), isDetached = dice.once(3);
@@ -215,7 +176,7 @@ class Corpus : public testing::Test {
         for (const std::string& line : lines)
             head += line + (isDos ? "\r\n" : "\n");
         std::string data = numbersAs(type, isBig);
-        if (encoding > 0) data = gzipped(data, 31);
+        if (encoding > 0) data = test::zipped(data, true);
         if (isDetached) {
             put("tooth.data", data);
             put("tooth.nhdr", head);
@@ -227,7 +188,7 @@ class Corpus : public testing::Test {
         return made;
     }
 
-    [[nodiscard]] Made metaImage(Dice& dice) const {
+    [[nodiscard]] Made metaImage(test::Dice& dice) const {
         Made made{"MetaImage"};
         const int type = dice.upTo(6);
         const bool isBig = dice.once(2), isPacked = dice.once(2), isDetached = dice.once(2), isTold = !dice.once(3);
@@ -250,7 +211,7 @@ class Corpus : public testing::Test {
         dice.shuffle(lines);
         std::string data = numbersAs(type, isBig);
         if (isPacked) {
-            data = gzipped(data, 15);
+            data = test::zipped(data, false);
             lines.emplace_back("CompressedData = True");
             if (dice.once(2)) lines.push_back(fmt::format("CompressedDataSize = {}", data.size()));
         }
@@ -268,7 +229,7 @@ class Corpus : public testing::Test {
         return made;
     }
 
-    [[nodiscard]] Made nifti(Dice& dice) const {
+    [[nodiscard]] Made nifti(test::Dice& dice) const {
         Made made{"NIfTI", 0, dice.oneOf({1.0, 2.0, 0.5}), dice.oneOf({0.0, -1000.0})};
         const int type = dice.upTo(6);
         const bool isBig = dice.once(3);
@@ -310,7 +271,7 @@ class Corpus : public testing::Test {
         if (isBig) swap_nifti_header(&h, 1);
         std::string head(reinterpret_cast<const char*>(&h), sizeof h);
         const std::string data = numbersAs(type, isBig), end = isPacked ? ".gz" : "";
-        const auto packed = [&](const std::string& bytes) { return isPacked ? gzipped(bytes, 31) : bytes; };
+        const auto packed = [&](const std::string& bytes) { return isPacked ? test::zipped(bytes, true) : bytes; };
         if (isPair) {
             put("tooth.hdr" + end, packed(head + std::string(4, '\0')));
             put("tooth.img" + end, packed(data));
@@ -323,7 +284,7 @@ class Corpus : public testing::Test {
         return made;
     }
 
-    [[nodiscard]] Made tiff(Dice& dice) const {
+    [[nodiscard]] Made tiff(test::Dice& dice) const {
         Made made{"TIFF"};
         const bool isBytes = dice.once(2), isOneFile = dice.once(3), isTiled = dice.once(3);
         const int compression =
@@ -376,7 +337,7 @@ class Corpus : public testing::Test {
         return made;
     }
 
-    [[nodiscard]] Made raw(Dice& dice) const {
+    [[nodiscard]] Made raw(test::Dice& dice) const {
         Made made{"raw", 0, dice.oneOf({1.0, 2.0}), dice.oneOf({0.0, -10.0})};
         const int type = dice.upTo(6), header = dice.oneOf({0, 17, 512});
         const bool isBig = dice.once(2), isTold = !dice.once(3);
@@ -422,12 +383,12 @@ class Corpus : public testing::Test {
 
 TEST_F(Corpus, AsOtherProgramsWriteThem) {
     const std::uint64_t seed = test::seed();
-    const int count = corpusSize();
+    const int count = test::corpusSize(320);
     int refused = 0, said = 0, unharmed = 0;
     ReadSettings settings;
     settings.takeLargest = true;
     for (int i = 0; i < count; ++i) {
-        Dice dice(seed + static_cast<std::uint64_t>(i));
+        test::Dice dice(seed + static_cast<std::uint64_t>(i));
         const auto make = [&] {
             switch (i % 8) {
                 case 0:

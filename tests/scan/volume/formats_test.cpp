@@ -12,6 +12,7 @@ namespace {
 
 using test::errorOf;
 using test::numbers;
+using test::zipped;
 using testing::AllOf;
 using testing::Contains;
 using testing::HasSubstr;
@@ -41,20 +42,6 @@ std::vector<T> small() {
     return v;
 }
 const std::vector<float> kSmall = small<float>();
-
-std::string zipped(const std::string& bytes, bool isGzip) {
-    std::string out(bytes.size() + 1000, '\0');
-    z_stream z{};
-    deflateInit2(&z, 6, Z_DEFLATED, isGzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY);
-    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
-    z.avail_in = static_cast<uInt>(bytes.size());
-    z.next_out = reinterpret_cast<Bytef*>(out.data());
-    z.avail_out = static_cast<uInt>(out.size());
-    deflate(&z, Z_FINISH);
-    out.resize(z.total_out);
-    deflateEnd(&z);
-    return out;
-}
 
 std::string nrrd(const std::string& type, const std::string& more, const std::string& data) {
     return "NRRD0005\n# somebody's remark\ntype: " + type + "\ndimension: 3\nsizes: 4 3 2\n" + more + "\n" + data;

@@ -3,6 +3,7 @@
 /// @file
 /// Small scans, and DICOM files made byte by byte by somebody who knows nothing of the reader.
 
+#include <zlib.h>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -105,6 +106,20 @@ std::string numbers(const std::vector<T>& values, bool isBigEndian = false) {
         for (std::size_t i = 0; i < sizeof(T); ++i)
             out += raw[isBigEndian ? sizeof(T) - 1 - i : i];
     }
+    return out;
+}
+
+inline std::string zipped(const std::string& bytes, bool isGzip) {
+    std::string out(bytes.size() + 1000, '\0');
+    z_stream z{};
+    deflateInit2(&z, 6, Z_DEFLATED, isGzip ? 31 : 15, 8, Z_DEFAULT_STRATEGY);
+    z.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+    z.avail_in = static_cast<uInt>(bytes.size());
+    z.next_out = reinterpret_cast<Bytef*>(out.data());
+    z.avail_out = static_cast<uInt>(out.size());
+    deflate(&z, Z_FINISH);
+    out.resize(z.total_out);
+    deflateEnd(&z);
     return out;
 }
 

@@ -124,8 +124,9 @@ TEST(HandlesOfAnOnlay, LieWhereACuspIsTakenDownTo) {
                 next.numbers[name] = valueOf(handle, recipe, movedMm);
                 const Laid again = preparation::layOn(tooth, next, laid.whole);
                 const double meantMm = (next.number(name) - recipe.number(name)) / handle.perMm;
-                // The isthmus runs close under a premolar's lingual cusp, and the handle hardly beside it.
-                EXPECT_NEAR(again.zones->targetMm(handle.placeMm + meantMm * handle.way), 0.0, fdi == 45 ? 0.1 : 0.06);
+                // The isthmus runs close under a premolar's lingual cusp, and under the low distolingual one of an
+                // upper molar, and the handle hardly beside it.
+                EXPECT_NEAR(again.zones->targetMm(handle.placeMm + meantMm * handle.way), 0.0, fdi == 46 ? 0.06 : 0.12);
             }
         }
         // Nothing is capped, no box: numbers can be drawn out of the tooth.

@@ -108,7 +108,7 @@ class Meshes(Test):
         mine = mesh.inspect()
         self.assertEqual(mine, {key: told[key] for key in mine})
         self.assertFalse(mine["closed"])
-        self.assertEqual(set(told) - set(mine), {"file", "notes", "repair"})
+        self.assertEqual(set(told) - set(mine), {"file", "notes", "repair", "colours"})
         closed, report = mesh.repair()
         told = json.loads(command("mesh", "repair", path, mended, "--json"))
         self.assertEqual(report, {key: told[key] for key in report})

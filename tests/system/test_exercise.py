@@ -75,8 +75,8 @@ class Exercise(SystemTest):
         short, _ = lost(onlay("short", 1.35))
         self.assertEqual(set(short), {"outline", "cusp-mesiobuccal", "cusp-distobuccal"})
         deep, _ = lost(onlay("deep", 2.15))
-        # So deep the cap cuts into the floor beside it, too.
-        self.assertEqual(set(deep), {"cusp-mesiobuccal", "cusp-distobuccal", "shoulder-buccal", "floor"})
+        # So deep the cap cuts into the floor beside it, too, and where cusps are low its depth is another.
+        self.assertEqual(set(deep) - {"depth"}, {"cusp-mesiobuccal", "cusp-distobuccal", "shoulder-buccal", "floor"})
         self.refused("exercise", "new", "--case", self.folder / "molar", "--id", "low", "--preparation", "onlay", "--side", "mesial", "--set",
                      "cap_mesiobuccal_mm=9", "--out", self.folder / "low", mentions=("0 to 3",))
         self.ok("make", "tooth", "--fdi", 11, "--faces", 4000, "--out", self.folder / "incisor")

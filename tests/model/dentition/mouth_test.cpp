@@ -456,9 +456,9 @@ TEST(Mouth, RefusesPlainly) {
     EXPECT_THROW((void)makeMouth({}, {.openingMm = NAN}), core::Error);
     EXPECT_THROW((void)makeMouth({}, {.faces = 2000}, [](double) { return false; }), core::Error) << "cancelled";
     EXPECT_THROW((void)arrange(std::vector<cases::Tooth>(3)), core::Error);
-    EXPECT_THAT(
-        [] { (void)makeMouth({}, {.faces = 2'000'000'000}); },
-        testing::Throws<core::Error>(testing::Property(&core::Error::problem, testing::HasSubstr("faces are not possible"))));
+    EXPECT_THAT([] { (void)makeMouth({}, {.faces = 2'000'000'000}); },
+                testing::Throws<core::Error>(
+                    testing::Property(&core::Error::problem, testing::HasSubstr("faces are not possible"))));
     EXPECT_GT(mouthBytes({.faces = 2000000}), mouthBytes({.faces = 70000}));
 }
 

@@ -181,7 +181,7 @@ TEST(FindLandmarks, AreWhereTheGeneratorPutThem) {
                            {LandmarkKind::fissure, 0.95, 0.17, 0.5, 0},
                            {LandmarkKind::marginalRidge, 0.9, 0.35, 0.7, 1},
                            {LandmarkKind::ridge, 0.65, 0.4, 0.8, 1},
-                           {LandmarkKind::pit, 0.6, 0.25, 1.1, 3},
+                           {LandmarkKind::pit, 0.55, 0.4, 1.1, 3},
                            {LandmarkKind::apex, 0.95, 0.05, 0.1, 0},
                            {LandmarkKind::longAxis, 0.95, 0.5, 0.8, 0},
                            {LandmarkKind::contact, 0.95, 0.13, 0.3, 0},

@@ -538,7 +538,7 @@ void addJobOptions(Command& command, ScanOptions& o) {
     command
         .option("--opening", o.openingMm,
                 "of a mouth's labels: open the jaws so far between the incisal edges [mm], else by 40; 0: as scanned")
-        .check(range(0.0, scan_case::kWidestOpeningMm));
+        .check(range(0.0, dentition::kWidestOpeningMm));
     command.option("--label-order", o.labelOrder, "what the file's labels 0, 1, 2, ... mean, in those numbers");
     command.option("--at", o.at, "X,Y,Z of a place in the tooth wanted [mm, the scan's frame]; else the largest");
     command.option("--threshold", o.threshold, "tooth=VALUE,enamel=VALUE: grey values from which on they begin");

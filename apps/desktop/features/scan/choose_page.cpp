@@ -338,7 +338,6 @@ void ChoosePage::showDetails() {
 void ChoosePage::showJob() {
     showing_ = true;
     reverse_->setChecked(model().job().reverseSlices);
-    reading_->showJob();
     const auto& source = model().job().source;
     dropText_->setText(source.empty()
                            ? tr("Drop a folder of slices, a ZIP or a file here")

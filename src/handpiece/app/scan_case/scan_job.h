@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "handpiece/model/case/case.h"
+#include "handpiece/model/dentition/arch.h"
 #include "handpiece/scan/registration/make_case.h"
 #include "handpiece/scan/registration/registration.h"
 #include "handpiece/scan/segmentation/label_key.h"
@@ -22,8 +23,6 @@
 #include "handpiece/scan/volume/read_scan.h"
 
 namespace handpiece::scan_case {
-
-inline constexpr double kWorkOpeningMm = 40.0, kWidestOpeningMm = 60.0;
 
 /// Everything a person decides between a scan and a case. Same job, same scan: the same bytes of case. `source`,
 /// `intraoral` and `tissuesFile` stay in the job's own file: no case, report or message of success holds them.
@@ -56,8 +55,8 @@ struct ScanJob {
     std::string kind;
     std::filesystem::path tissuesFile;  ///< table of tissues of one's own; empty: as shipped
     double openingMm =
-        kWorkOpeningMm;    ///< of a mouth: its jaws are opened so far between the incisal edges; 0: as scanned
-    bool scenery = false;  ///< what stands around the tooth in the scan, as far as kSceneryReachMm
+        dentition::kOpeningMm;  ///< of a mouth: its jaws are opened so far between the incisal edges; 0: as scanned
+    bool scenery = false;       ///< what stands around the tooth in the scan, as far as kSceneryReachMm
     // How fine.
     std::vector<double> percents;  ///< a case each; empty: one case, with as many faces as the standard field can use
     std::size_t faces = 0;         ///< of all surfaces together, instead of percents; 0: by percents

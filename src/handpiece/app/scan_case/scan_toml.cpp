@@ -314,7 +314,7 @@ ScanJob scanJobFromToml(std::string_view text, const std::string& where) {
         static_cast<int>(checked(table, "fdi", static_cast<double>(table.integer("fdi").value_or(0)), 0.0, 85.0));
     job.tissuesFile = table.text("tissues").value_or("");
     job.scenery = table.flag("scenery").value_or(false);
-    take(table, "opening_mm", job.openingMm, 0.0, kWidestOpeningMm);
+    take(table, "opening_mm", job.openingMm, 0.0, dentition::kWidestOpeningMm);
     if (table.has("percents")) {
         job.percents = table.numbers("percents");
         if (job.percents.empty())

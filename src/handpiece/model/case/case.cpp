@@ -12,6 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 #include "handpiece/base/core/hash.h"
+#include "handpiece/base/core/leads_out.h"
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/geometry/mesh_io.h"
 #include "handpiece/base/geometry/read_notes.h"
@@ -195,24 +196,14 @@ void readMeshes(const CaseFiles& files, const std::vector<std::string>& names, C
 
 }  // namespace
 
-// A name stays inside (requireInside); what a link of that name leads to need not.
-void requireNotLinkedOut(const fs::path& folder, const std::string& name) {
-    std::error_code error;
-    const fs::path home = fs::weakly_canonical(folder, error);
-    if (error) return;
-    const fs::path file = fs::weakly_canonical(folder / name, error);
-    if (error) return;  // reading says what is wrong
-    if (std::mismatch(home.begin(), home.end(), file.begin(), file.end()).first != home.end())
-        throw core::Error("this is a link that leads out of the case's folder, and is not followed",
-                          (folder / name).string(), "put the file itself into the folder");
-}
-
 CaseFiles filesInFolder(const fs::path& folder) {
     CaseFiles files;
     files.source = folder;
     files.has = [folder](const std::string& name) { return core::isThere(folder / name); };
     files.read = [folder](const std::string& name, std::uint64_t most) {
-        requireNotLinkedOut(folder, name);
+        if (core::leadsOut(folder, folder / name))
+            throw core::Error("this is a link that leads out of the case's folder, and is not followed",
+                              (folder / name).string(), "put the file itself into the folder");
         return core::readFile(folder / name, most);
     };
     files.where = [folder](const std::string& name) { return (folder / name).string(); };

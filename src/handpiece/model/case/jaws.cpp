@@ -20,10 +20,7 @@ namespace {
 using core::Pose;
 using core::Vec3;
 
-// Bonwill's triangle of 4 inches, tipped by Balkwill's angle of 22 degrees [R], as in a generated mouth: from the lower
-// incisal edges back and up to the hinge.
-constexpr double kHingeMm = 88.0, kBalkwillRad = 22.0 * std::numbers::pi / 180.0;
-constexpr double kWidestMm = 60.0;
+constexpr double kWidestDegrees = 60.0;
 /// How far behind the incisal edges the first to eighth tooth's cusps lie, about [R]: where the front teeth are
 /// missing.
 constexpr std::array<double, 8> kBehindMm{0.0, 1.5, 5.0, 11.0, 17.0, 25.0, 35.0, 44.0};
@@ -121,25 +118,29 @@ Case inOcclusion(Case c) {
     return c;
 }
 
+Pose openedAbout(const Vec3& hingeMm, const Vec3& left, const Vec3& upperIncisalMm, const Vec3& lowerIncisalMm,
+                 double openingMm) {
+    const auto mandible = [&](double rad) {
+        const core::Quat turn = core::rotationAbout(left, rad);
+        return Pose{hingeMm - turn * hingeMm, turn};
+    };
+    double least = 0.0, most = kWidestDegrees * (std::numbers::pi / 180.0);
+    for (int i = 0; i < 50; ++i) {
+        const double middle = 0.5 * (least + most);
+        const bool isWide = (mandible(middle).apply(lowerIncisalMm) - upperIncisalMm).norm() > openingMm;
+        (isWide ? most : least) = middle;
+    }
+    return mandible(least);
+}
+
 bool openJaws(Case& c, double incisalOpeningMm) {
     const std::optional<Jaws> jaws = jawsOf(c);
     if (!jaws) return false;
-    const Vec3 hinge = jaws->incisalMm[1] - kHingeMm * core::cos(kBalkwillRad) * jaws->forward +
-                       kHingeMm * core::sin(kBalkwillRad) * jaws->up;
-    const auto mandible = [&](double rad) {
-        const core::Quat turn = core::rotationAbout(jaws->left, rad);
-        return Pose{hinge - turn * hinge, turn};
-    };
-    const auto isWide = [&](double rad) {
-        return (mandible(rad).apply(jaws->incisalMm[1]) - jaws->incisalMm[0]).norm() > incisalOpeningMm;
-    };
-    if (isWide(0.0)) return false;
-    double least = 0.0, most = kWidestMm * std::numbers::pi / 180.0;
-    for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (least + most);
-        (isWide(middle) ? most : least) = middle;
-    }
-    const Pose opening = mandible(least);
+    const auto& [upper, lower] = jaws->incisalMm;
+    if ((lower - upper).norm() > incisalOpeningMm) return false;
+    const Vec3 hinge = lower - kBonwillHeightMm * core::cos(kBalkwillRad) * jaws->forward +
+                       kBonwillHeightMm * core::sin(kBalkwillRad) * jaws->up;
+    const Pose opening = openedAbout(hinge, jaws->left, upper, lower, incisalOpeningMm);
     if (!moveOtherArch(c, isLowerTooth(c.fdiNumber) ? opening.inverse() : opening)) return false;
     c.opening = (opening * c.opening).normalised();
     return true;

@@ -14,6 +14,7 @@
 #include "handpiece/base/core/rotation.h"
 #include "handpiece/base/geometry/height_raster.h"
 #include "handpiece/model/case/fdi.h"
+#include "handpiece/model/case/work_on.h"
 #include "handpiece/model/dentition/tooth_body.h"
 
 namespace handpiece::dentition {
@@ -218,10 +219,8 @@ class Arranger {
             made.toothInMouth[i] = poseOf(i);
         made.upperIncisalMm = 0.5 * (edgeOf(0) + edgeOf(8));
         made.lowerIncisalMm = 0.5 * (edgeOf(16) + edgeOf(24));
-        // Bonwill's triangle of 4 inches, tipped by Balkwill's angle of 22 degrees [R].
-        constexpr double kHeightOfTriangleMm = 88.0, kBalkwill = 22.0 * kRad;
-        made.hingeMm =
-            made.lowerIncisalMm + kHeightOfTriangleMm * Vec3(0.0, core::cos(kBalkwill), core::sin(kBalkwill));
+        made.hingeMm = made.lowerIncisalMm + cases::kBonwillHeightMm * Vec3(0.0, core::cos(cases::kBalkwillRad),
+                                                                            core::sin(cases::kBalkwillRad));
         return made;
     }
 
@@ -425,17 +424,8 @@ Arrangement arrange(std::span<const cases::Tooth> teeth, const core::Progress& p
 }
 
 Pose opened(const Arrangement& a, double openingMm) {
-    const auto mandible = [&](double rad) {
-        const Quat turn = core::rotationAbout(Vec3::UnitX(), rad);
-        return Pose{a.hingeMm - turn * a.hingeMm, turn};
-    };
-    double least = 0.0, most = 60.0 * kRad;
-    for (int i = 0; i < 50; ++i) {
-        const double middle = 0.5 * (least + most);
-        const bool isWide = (mandible(middle).apply(a.lowerIncisalMm) - a.upperIncisalMm).norm() > openingMm;
-        (isWide ? most : least) = middle;
-    }
-    return openingMm > 0.0 ? mandible(least) : Pose{};
+    if (!(openingMm > 0.0)) return {};
+    return cases::openedAbout(a.hingeMm, Vec3::UnitX(), a.upperIncisalMm, a.lowerIncisalMm, openingMm);
 }
 
 }  // namespace handpiece::dentition

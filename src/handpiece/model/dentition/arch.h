@@ -35,7 +35,7 @@ inline constexpr double kWilsonRadiusMm = 101.6;  ///< of the line through bucca
 inline constexpr double kOverbiteMm = 2.5;
 /// Adjacent crowns: a foil of floss's thickness does not pass.
 inline constexpr double kContactGapMm = 0.015;
-inline constexpr double kOpeningMm = 40.0;  ///< between the incisal edges, for work
+inline constexpr double kOpeningMm = 40.0, kWidestOpeningMm = 60.0;  ///< between the incisal edges: for work, at most
 
 struct Arrangement {
     std::array<core::Pose, kToothCount> toothInMouth;  ///< jaws closed, maximal intercuspation

@@ -20,7 +20,6 @@ namespace {
 
 using core::Pose;
 
-constexpr double kWidestOpeningMm = 60.0;
 /// The gingiva's solid goes on through the bone.
 constexpr int kBonePriority = 6;
 

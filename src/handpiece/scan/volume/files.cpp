@@ -12,6 +12,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/leads_out.h"
 
 namespace handpiece::volume {
 namespace {
@@ -24,15 +25,6 @@ constexpr std::uint64_t kMaxRatio = 1100, kSmallBytes = 1 << 20;
 
 bool isDigit(char c) {
     return c >= '0' && c <= '9';
-}
-
-/// A link, or a folder that is one, to something that does not lie in `folder`.
-bool leadsOut(const fs::path& folder, const fs::path& file) {
-    std::error_code ec;
-    const fs::path within = fs::canonical(folder, ec);
-    if (ec) return true;
-    const fs::path real = fs::canonical(file, ec);
-    return ec || std::mismatch(within.begin(), within.end(), real.begin(), real.end()).first != within.end();
 }
 
 struct CloseEntry {
@@ -332,7 +324,7 @@ std::optional<std::size_t> FileSet::find(std::string_view beside, std::string_vi
     const std::string full = std::string(folderOf(beside)) + std::string(name);
     for (std::size_t i = 0; i < entries_.size(); ++i) {
         if (entries_[i].name != full) continue;
-        if (!archive_ && memory_.empty() && leadsOut(root_, root_ / full))
+        if (!archive_ && memory_.empty() && core::leadsOut(root_, root_ / full))
             throw core::Error("this is a link that leads out of the scan's folder", where(i),
                               "put the file itself there");
         return i;

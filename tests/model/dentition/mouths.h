@@ -14,6 +14,7 @@
 #include "handpiece/base/geometry/isosurface.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/dentition/mouth.h"
+#include "handpiece/model/dentition/occlusion.h"
 
 namespace handpiece::dentition {
 
@@ -27,6 +28,7 @@ using geometry::TriangleTree;
 struct Mouth {
     std::vector<cases::Tooth> teeth;
     Arrangement arches;
+    double deepestFacetMm = 0.0;
     std::vector<TriangleMesh> placed;  ///< closed, mouth frame
     std::vector<TriangleTree> trees;   ///< of those
 
@@ -88,6 +90,7 @@ inline Mouth madeMouth(std::uint64_t seed) {
     Mouth m;
     m.teeth = coarseTeeth({seed, 25.0});
     m.arches = arrange(m.teeth);
+    m.deepestFacetMm = grindFacets(m.teeth, m.arches);
     for (std::size_t i = 0; i < kToothCount; ++i) {
         m.placed.push_back(geometry::transformed(m.teeth[i].outer, m.arches.toothInMouth[i]));
         m.trees.emplace_back(m.placed.back());

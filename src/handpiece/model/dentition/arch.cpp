@@ -15,6 +15,7 @@
 #include "handpiece/base/geometry/height_raster.h"
 #include "handpiece/model/case/fdi.h"
 #include "handpiece/model/case/work_on.h"
+#include "handpiece/model/dentition/occlusion.h"
 #include "handpiece/model/dentition/tooth_body.h"
 
 namespace handpiece::dentition {
@@ -45,11 +46,29 @@ constexpr double kMostTurnedDeg = 20.0;  ///< into the curves
 
 /// Upper incisal edges below the lower ones: central, lateral, canine [R].
 constexpr double kOverbites[3] = {kOverbiteMm, kOverbiteMm - 0.5, kOverbiteMm - 0.3};
-constexpr double kOcclusalGapMm = 0.008, kToleranceMm = 0.003;
+constexpr double kToleranceMm = 0.003;
 constexpr double kLookMm = 4.0;  ///< teeth farther apart are brought closer unseen
 
-// How far an upper tooth may leave its place to settle, and what that costs against depth [mm for 1 mm, for 1 degree].
-constexpr double kMostAsideMm = 0.8, kMostTiltDeg = 5.0, kCostOfAside = 0.15, kCostOfTilt = 0.003;
+/// How far a tooth may leave its place to settle, and what that costs against depth [mm for 1 mm, for 1 degree].
+struct Freedom {
+    double asideMm, mesialDeg, buccalDeg, turnDeg;
+    double costOfAside, costOfMesial, costOfBuccal, costOfTurn;
+};
+// Roots that lean together leave no bone between them: leaning to mesial or distal costs premolars most, and lower
+// teeth may not. These stay near the curves of Spee and Wilson, and rise to meet what is over them.
+constexpr Freedom kUpperPremolars{0.8, 5.0, 10.0, 8.0, 0.15, 0.003, 0.0005, 0.0005},
+    kUpperMolars{0.8, 6.0, 12.0, 8.0, 0.15, 0.001, 0.0005, 0.0005},
+    kLowerPremolars{0.5, 2.0, 6.0, 8.0, 0.15, 0.006, 0.001, 0.0005},
+    kLowerMolars{0.3, 0.0, 3.0, 8.0, 0.3, 0.0, 0.002, 0.001};
+constexpr const Freedom& freedomOf(std::size_t i) {
+    return i % 8 < 5 ? (isUpper(i) ? kUpperPremolars : kLowerPremolars) : (isUpper(i) ? kUpperMolars : kLowerMolars);
+}
+constexpr double kMostRiseMm = 0.5;
+constexpr int kRounds = 2;  ///< in which the lower teeth rise and all settle again
+// It settles as on springs, one under each place: by the volume in which it and the lower teeth overlap, until facets
+// are ground. Premolars bear less than molars.
+constexpr double kPremolarsBiteMm3 = 0.05, kMolarsBiteMm3 = 0.1;
+constexpr std::size_t kFirstThatSettles = 3;  ///< of a quadrant: those before it meet with their edges
 // Adjacent teeth meet this far over the cervix or higher, else they are tilted by so much more until they do.
 constexpr double kCrownFromMm = 1.5, kClearRootsDeg = 2.5;
 
@@ -102,7 +121,8 @@ struct Member {
     bool inCurves = false;  ///< its cusps lie in the curves; else its axis has its place's inclination
     int buccalSign = 0;
     double halfWidth = 0.0;
-    std::vector<Vec3> occlusal{};  ///< vertices near the top, at most some thousands
+    std::vector<Vec3> occlusal{};   ///< vertices near the top, at most some thousands
+    std::vector<double> areaMm2{};  ///< seen from above, what each of them stands for
 };
 
 Vec3 mean(const std::vector<Vec3>& points) {
@@ -110,6 +130,26 @@ Vec3 mean(const std::vector<Vec3>& points) {
     for (const Vec3& p : points)
         sum += p;
     return sum / static_cast<double>(points.size());
+}
+
+/// The vertices near the top, and what of the surface each stands for.
+void addOcclusal(Member& m) {
+    const geometry::TriangleMesh& mesh = m.body.mesh;
+    std::vector<double> areaMm2(mesh.vertices.size(), 0.0);
+    for (const geometry::Triangle& t : mesh.triangles) {
+        const Vec3 &a = mesh.vertices[t[0]], &b = mesh.vertices[t[1]], &c = mesh.vertices[t[2]];
+        for (const std::uint32_t v : t)
+            areaMm2[v] += (b - a).cross(c - a).z() / 6.0;
+    }
+    std::vector<std::size_t> near;
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
+        if (mesh.vertices[i].z() > m.body.box.max.z() - 4.5 && areaMm2[i] > 0.0) near.push_back(i);
+    constexpr std::size_t kEnough = 3000;
+    const std::size_t step = near.size() / kEnough + 1;
+    for (std::size_t i = 0; i < near.size(); i += step) {
+        m.occlusal.push_back(mesh.vertices[near[i]]);
+        m.areaMm2.push_back(static_cast<double>(step) * areaMm2[near[i]]);
+    }
 }
 
 Member memberOf(const cases::Tooth& tooth, const ToothBody& body, bool upper, int place) {
@@ -124,14 +164,8 @@ Member memberOf(const cases::Tooth& tooth, const ToothBody& body, bool upper, in
     for (const Vec3& v : vertices) {
         if (v.z() > 0.0) least = std::min(least, v.x()), most = std::max(most, v.x());
         if (v.z() > top - 0.25) highest.push_back(v);
-        if (v.z() > top - 4.5) m.occlusal.push_back(v);
     }
-    constexpr std::size_t kEnough = 3000;
-    if (const std::size_t step = m.occlusal.size() / kEnough + 1; step > 1) {
-        for (std::size_t i = 0; i * step < m.occlusal.size(); ++i)
-            m.occlusal[i] = m.occlusal[i * step];
-        m.occlusal.resize((m.occlusal.size() + step - 1) / step);
-    }
+    addOcclusal(m);
     m.halfWidth = 0.5 * (most - least);
     const bool hasTable = place >= 4 && !buccal.empty() && !lingual.empty();
     const Vec3 edge = place >= 4 && !buccal.empty() ? mean(buccal) : mean(highest);
@@ -161,22 +195,25 @@ struct Place {
     double asideMm = 0.0;  ///< outwards from it
     double upMm = 0.0;
     double mesialDeg = 0.0, buccalDeg = 0.0;  ///< tilted further than its inclination
-    double leastMesialDeg = -kMostTiltDeg;    ///< so that its roots clear those of the tooth before it
+    double turnDeg = 0.0;                     ///< about its long axis
+    double leastMesialDeg = -90.0;            ///< so that its roots clear those of the tooth before it
 };
 
-/// The highest of the lower teeth over each place of the occlusal plane.
+/// How far the teeth of an arch come towards the other one, over each place of the occlusal plane.
 class HeightMap {
   public:
-    HeightMap() : z_(static_cast<std::size_t>(kWide * kDeep), kNothing) {}
+    /// `sign`: +1 of lower teeth, heights; -1 of upper ones, depths.
+    explicit HeightMap(double sign) : sign_(sign), z_(static_cast<std::size_t>(kWide * kDeep), kNothing) {}
     void add(const geometry::TriangleMesh& mesh, const Pose& pose) {
         const Mat3 turn = pose.orientation.toRotationMatrix();
         std::vector<Vec3> moved;
         moved.reserve(mesh.vertices.size());
         for (const Vec3& v : mesh.vertices)
             moved.push_back(
-                (turn * v + pose.positionMm - Vec3(kFromX, kFromY, 0.0)).cwiseProduct(Vec3(kPerMm, kPerMm, 1.0)));
+                (turn * v + pose.positionMm - Vec3(kFromX, kFromY, 0.0)).cwiseProduct(Vec3(kPerMm, kPerMm, sign_)));
         for (const geometry::Triangle& t : mesh.triangles) {
-            const Vec3 &a = moved[t[0]], &b = moved[t[1]], &c = moved[t[2]];
+            // Upside down they run the other way around.
+            const Vec3 &a = moved[t[0]], &b = moved[t[sign_ > 0.0 ? 1 : 2]], &c = moved[t[sign_ > 0.0 ? 2 : 1]];
             geometry::heightsUnder(a, b, c, kWide, kDeep, [&](int x, int y, double height) {
                 double& z = z_[static_cast<std::size_t>(y * kWide + x)];
                 z = std::max(z, height);
@@ -195,6 +232,7 @@ class HeightMap {
   private:
     static constexpr double kFromX = -42.0, kFromY = -12.0, kPerMm = 8.0, kNothing = -40.0;
     static constexpr int kWide = 84 * 8, kDeep = 84 * 8;
+    double sign_;
     std::vector<double> z_;
 };
 
@@ -210,10 +248,18 @@ class Arranger {
     }
 
     Arrangement run() {
+        // Upper teeth come down onto the lower ones; these then rise to them, and all is placed again.
         placeArch(false);
-        for (std::size_t i = 16; i < kToothCount; ++i)
-            lower_.add(bodies_[i].mesh, poseOf(i));
         placeArch(true);
+        for (int round = 0; round < kRounds; ++round) {
+            const HeightMap upper = mapOf(true);
+            core::parallelFor(kToothCount / 2, 1, [&](std::size_t from, std::size_t to) {
+                for (std::size_t i = kToothCount / 2 + from; i < kToothCount / 2 + to; ++i)
+                    if (i % 8 >= kFirstThatSettles) settle(i, upper);
+            });
+            placeArch(false);
+            placeArch(true);
+        }
         Arrangement made;
         for (std::size_t i = 0; i < kToothCount; ++i)
             made.toothInMouth[i] = poseOf(i);
@@ -236,6 +282,12 @@ class Arranger {
             }
         return widths / kMeanWidthsMm;
     }
+    [[nodiscard]] HeightMap mapOf(bool upper) const {
+        HeightMap map(upper ? -1.0 : 1.0);
+        for (std::size_t i = upper ? 0 : 16; i < (upper ? 16 : kToothCount); ++i)
+            map.add(bodies_[i].mesh, poseOf(i));
+        return map;
+    }
     /// +1: the patient's left.
     static double sideOf(std::size_t i) { return i / 8 == 1 || i / 8 == 2 ? 1.0 : -1.0; }
 
@@ -253,7 +305,8 @@ class Arranger {
         base << x, z.cross(x), z;
         Pose pose;
         pose.orientation = (Quat(base) * m.ownTilt * core::rotationAbout(Vec3::UnitY(), at.mesialDeg * kRad) *
-                            core::rotationAbout(Vec3::UnitX(), -m.buccalSign * at.buccalDeg * kRad))
+                            core::rotationAbout(Vec3::UnitX(), -m.buccalSign * at.buccalDeg * kRad) *
+                            core::rotationAbout(Vec3::UnitZ(), at.turnDeg * kRad))
                                .normalized();
         pose.positionMm =
             Vec3(stands.x(), stands.y(), line_.speeHeight(on.point.y()) + at.upMm) - pose.orientation * m.reference;
@@ -304,6 +357,7 @@ class Arranger {
 
     void placeArch(bool upper) {
         const std::size_t right = upper ? 0 : 24, left = upper ? 8 : 16;
+        if (upper) lower_ = mapOf(false);
         for (const std::size_t first : {right, left})
             places_[first].s = members_[first].halfWidth + 0.5;
         for (int round = 0; round < (upper ? 3 : 1); ++round) {
@@ -349,52 +403,84 @@ class Arranger {
             }
             stopOnLower(i, false);
         }
-        core::report(progress_, static_cast<double>(++placed_) / 28.0);
+        core::report(progress_, static_cast<double>(++placed_) / (28.0 * (1 + kRounds)));
     }
 
     /// An upper tooth comes down, or from in front back, until it meets the lower ones.
     void stopOnLower(std::size_t i, bool isFree = true) {
         Place& at = places_[i];
-        if (const std::size_t place = i % 8; place < 3) {
+        if (const std::size_t place = i % 8; place < kFirstThatSettles) {
             if (isFree) at.upMm = -kOverbites[place], at.asideMm = std::max(at.asideMm, 6.0);
             close(at.asideMm, kOcclusalGapMm, [&] { return gapToLower(i); });
             return;
         }
-        if (isFree) settle(i);
-        close(at.upMm, kOcclusalGapMm, [&] { return gapToLower(i); });
+        if (isFree) settle(i, lower_);
+        biteCost(i, at, lower_);
     }
 
-    /// The place near its own, and the tilt, in which it comes down deepest: where its cusps have found the fossae.
-    void settle(std::size_t i) {
-        Place& at = places_[i];
-        const auto cost = [&](Place& p) {
-            p.upMm = 0.0;
-            const Pose pose = poseOf(i, p);
-            const Mat3 turn = pose.orientation.toRotationMatrix();
-            double least = 1e9;
-            for (const Vec3& v : members_[i].occlusal) {
-                const Vec3 q = turn * v + pose.positionMm;
-                least = std::min(least, q.z() - lower_.at(q.x(), q.y()));
-            }
-            p.upMm = -least;
-            return p.upMm + kCostOfAside * p.asideMm * p.asideMm +
-                   kCostOfTilt * (p.mesialDeg * p.mesialDeg + p.buccalDeg * p.buccalDeg);
+    /// Lets the tooth bite on the other arch at this place, as on springs, until they bear its load, and says what that
+    /// costs: how high it stays and what the springs hold, against leaving its place. Its least is where the tooth is
+    /// in balance.
+    double biteCost(std::size_t i, Place& p, const HeightMap& others) const {
+        struct Spring {
+            double fromMm, areaMm2;
         };
-        double best = cost(at);
+        const Member& m = members_[i];
+        const double sign = isUpper(i) ? 1.0 : -1.0;
+        const Pose pose = poseOf(i, (p.upMm = 0.0, p));
+        const Mat3 turn = pose.orientation.toRotationMatrix();
+        std::vector<Spring> springs;
+        double least = 1e9;
+        for (std::size_t k = 0; k < m.occlusal.size(); ++k) {
+            const Vec3 q = turn * m.occlusal[k] + pose.positionMm;
+            const double from = sign * q.z() - others.at(q.x(), q.y());
+            least = std::min(least, from);
+            if (from < least + kDeepestOverlapMm) springs.push_back({from, m.areaMm2[k]});
+        }
+        const double bite = i % 8 < 5 ? kPremolarsBiteMm3 : kMolarsBiteMm3;
+        double down = least + kDeepestOverlapMm, borne = 0.0, rate = 0.0, held = 0.0;
+        const auto press = [&] {
+            borne = rate = held = 0.0;
+            for (const Spring& s : springs)
+                if (const double by = down - s.fromMm; by > 0.0)
+                    borne += s.areaMm2 * by, rate += s.areaMm2, held += 0.5 * s.areaMm2 * by * by;
+        };
+        press();
+        // What they bear grows ever faster: Newton's steps from too deep a place stay too deep.
+        for (int step = 0; step < 20 && borne > bite + 1e-6; ++step)
+            down -= (borne - bite) / rate, press();
+        if (!isUpper(i) && !(down >= 0.0 && down <= kMostRiseMm)) down = std::clamp(down, 0.0, kMostRiseMm), press();
+        p.upMm = -sign * down;
+        const Freedom& freedom = freedomOf(i);
+        const auto square = [](double x) { return x * x; };
+        return -down + held / bite + freedom.costOfAside * square(p.asideMm) +
+               freedom.costOfMesial * square(p.mesialDeg) + freedom.costOfBuccal * square(p.buccalDeg) +
+               freedom.costOfTurn * square(p.turnDeg);
+    }
+
+    /// The place near its own, the tilt and the turn in which it bites best: where its cusps have found the fossae and
+    /// several spots take the load.
+    void settle(std::size_t i, const HeightMap& others) {
+        Place& at = places_[i];
+        const Freedom& freedom = freedomOf(i);
+        double best = biteCost(i, at, others);
         double asideStep = 0.4, tiltStep = 2.0;
         for (int halving = 0; halving < 7; ++halving, asideStep *= 0.5, tiltStep *= 0.5)
             for (bool better = true; better;) {
                 better = false;
-                for (int which = 0; which < 27; ++which) {
+                for (int which = 0; which < 81; ++which) {
                     Place tried = at;
                     tried.asideMm += (which % 3 - 1) * asideStep;
                     tried.mesialDeg += (which / 3 % 3 - 1) * tiltStep;
-                    tried.buccalDeg += (which / 9 - 1) * tiltStep;
-                    if (std::abs(tried.asideMm) > kMostAsideMm || tried.mesialDeg < at.leastMesialDeg ||
-                        tried.mesialDeg > std::max(kMostTiltDeg, at.leastMesialDeg) ||
-                        std::abs(tried.buccalDeg) > kMostTiltDeg)
+                    tried.buccalDeg += (which / 9 % 3 - 1) * tiltStep;
+                    tried.turnDeg += (which / 27 - 1) * tiltStep;
+                    const double leastMesialDeg = std::max(-freedom.mesialDeg, at.leastMesialDeg);
+                    if (std::abs(tried.asideMm) > freedom.asideMm || tried.mesialDeg < leastMesialDeg ||
+                        tried.mesialDeg > std::max(freedom.mesialDeg, leastMesialDeg) ||
+                        std::abs(tried.buccalDeg) > freedom.buccalDeg || std::abs(tried.turnDeg) > freedom.turnDeg)
                         continue;
-                    if (const double value = cost(tried); value < best - 1e-5) best = value, at = tried, better = true;
+                    if (const double value = biteCost(i, tried, others); value < best - 1e-5)
+                        best = value, at = tried, better = true;
                 }
             }
     }
@@ -404,7 +490,7 @@ class Arranger {
     std::vector<ToothBody> bodies_;
     std::vector<Member> members_;
     std::array<Place, kToothCount> places_;
-    HeightMap lower_;
+    HeightMap lower_{1.0};
     std::atomic<int> placed_{0};
 };
 

@@ -14,6 +14,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/model/case/work_on.h"
 #include "handpiece/model/dentition/cheeks.h"
+#include "handpiece/model/dentition/occlusion.h"
 
 namespace handpiece::dentition {
 namespace {
@@ -84,6 +85,7 @@ cases::Case makeMouth(const Patient& patient, const MouthOptions& options, const
     });
 
     const Arrangement arches = arrange(teeth, core::part(progress, kTeethShare, kArchesShare));
+    grindFacets(teeth, arches);
     const Pose mandible = opened(arches, options.openingMm);
     std::array<Pose, kToothCount> inMouth = arches.toothInMouth;
     for (std::size_t i = 16; i < kToothCount; ++i)

@@ -225,9 +225,7 @@ cases::Case starterCase(const Starter& starter, const fs::path& folder, const co
     hears.making = [&] { tell(listener, LoadStep::mouth); };
     cases::Case mouth =
         course::keptMouth(starter.fdi, starter.patient, folder, core::part(progress, toothShare, 1.0), hears);
-    // The mouth's own teeth are coarser: the one that is worked on stands in for its like, in the same frame.
-    static_cast<cases::Tooth&>(mouth) = std::move(static_cast<cases::Tooth&>(tooth));
-    return mouth;
+    return course::standIn(std::move(static_cast<cases::Tooth&>(tooth)), std::move(mouth));
 }
 
 instrument::Drive driveAt(const std::string& name, double speedRpm) {

@@ -6,12 +6,15 @@
 
 namespace handpiece::course {
 
-cases::Case firstMouth(const std::filesystem::path& folder) {
-    cases::Case tooth = keptTooth(kFirstFdi, {}, kFirstFaces, folder);
-    cases::Case mouth = keptMouth(kFirstFdi, {}, folder);
-    static_cast<cases::Tooth&>(mouth) = std::move(static_cast<cases::Tooth&>(tooth));
+cases::Case standIn(cases::Tooth tooth, cases::Case mouth) {
+    static_cast<cases::Tooth&>(mouth) = std::move(tooth);
     dentition::grindOntoAntagonists(mouth);
     return mouth;
+}
+
+cases::Case firstMouth(const std::filesystem::path& folder) {
+    cases::Tooth tooth = keptTooth(kFirstFdi, {}, kFirstFaces, folder);
+    return standIn(std::move(tooth), keptMouth(kFirstFdi, {}, folder));
 }
 
 }  // namespace handpiece::course

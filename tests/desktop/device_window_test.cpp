@@ -29,7 +29,7 @@
 #include "led_driver.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::device_window_test {
 namespace {
 
 class DeviceWindowTest : public ShellTest {
@@ -571,4 +571,4 @@ TEST_F(ShellTest, TheSimulatedArmIsAlwaysThereAndAnInjectedFaultEndsInTheMouse) 
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::device_window_test

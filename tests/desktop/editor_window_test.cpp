@@ -28,7 +28,7 @@
 #include "handpiece/model/tooth/state_file.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::editor_window_test {
 namespace {
 
 class EditorTest : public ShellTest {
@@ -722,4 +722,4 @@ TEST_F(EditorTest, ChangesAreAskedAboutBeforeTheyGo) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::editor_window_test

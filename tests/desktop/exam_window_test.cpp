@@ -18,7 +18,7 @@
 #include "desktop/framework/language.h"
 #include "school_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::exam_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -470,4 +470,4 @@ TEST(ExamBars, TellTimeAsAClockDoes) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::exam_window_test

@@ -25,7 +25,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::exercise_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -485,4 +485,4 @@ TEST_F(ExerciseTest, WhoLooksAtWhatWasHandedInHasNoLocksAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::exercise_window_test

@@ -13,7 +13,7 @@
 #include "desktop/work/session_shelf.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::first_minute_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -235,4 +235,4 @@ TEST_F(FirstMinute, HelpLeadsToTheGuide) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::first_minute_window_test

@@ -12,7 +12,7 @@
 #include "handpiece/model/tooth/state_delta.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::hand_map_test {
 namespace {
 
 core::Vec3 vecOf(const QJsonValue& value) {
@@ -99,4 +99,4 @@ TEST_F(HandMapTest, AWidgetMapTellsWindowsAndTheButtonsOfAQuestion) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::hand_map_test

@@ -12,7 +12,7 @@
 #include "handpiece/senses/view/camera.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::landmarks_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -286,4 +286,4 @@ TEST_F(LandmarksTest, AreReadOnlyInAnExercise) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::landmarks_window_test

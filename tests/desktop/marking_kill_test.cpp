@@ -17,7 +17,7 @@
 #include "desktop/features/marking/sheet_panel.h"
 #include "marking_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::marking_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -34,7 +34,7 @@ struct Told {
     int lines = 0;
 };
 
-class KillTest : public MarkingTest {
+class MarkingKillTest : public MarkingTest {
   protected:
     fs::path folder_ = [] {
         const char* given = std::getenv("HANDPIECE_KILL_FOLDER");
@@ -141,7 +141,7 @@ class KillTest : public MarkingTest {
 };
 
 /// Opens work after work and judges it, without end.
-TEST_F(KillTest, DISABLED_MarksUntilItIsKilled) {
+TEST_F(MarkingKillTest, DISABLED_MarksUntilItIsKilled) {
     ASSERT_FALSE(folder_.empty());
     const std::string marker = std::getenv("HANDPIECE_KILL_MARKER");
     const bool isBlind = marker != "Tanaka";
@@ -171,7 +171,7 @@ TEST_F(KillTest, DISABLED_MarksUntilItIsKilled) {
     }
 }
 
-TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
+TEST_F(MarkingKillTest, NothingIsLostHoweverOftenItIsKilled) {
     QTemporaryDir place;
     folder_ = toPath(place.path());
     makeWork();
@@ -194,7 +194,7 @@ TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
         if (child == 0) {
             ::setenv("HANDPIECE_KILL_FOLDER", folder_.c_str(), 1);
             ::setenv("HANDPIECE_KILL_MARKER", marker.c_str(), 1);
-            ::execl("/proc/self/exe", "killed", "--gtest_filter=KillTest.DISABLED_MarksUntilItIsKilled",
+            ::execl("/proc/self/exe", "killed", "--gtest_filter=MarkingKillTest.DISABLED_MarksUntilItIsKilled",
                     "--gtest_also_run_disabled_tests", nullptr);
             ::_exit(127);
         }
@@ -261,4 +261,4 @@ TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::marking_kill_test

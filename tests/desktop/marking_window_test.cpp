@@ -24,7 +24,7 @@
 #include "handpiece/model/case/attempt.h"
 #include "marking_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::marking_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -558,4 +558,4 @@ TEST_F(MarkingTest, AFolderIsDroppedAndScoringIsCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::marking_window_test

@@ -19,7 +19,7 @@
 #include "desktop/widgets/number_field.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::number_fields_test {
 namespace {
 
 /// Brings it before the eye: its dock, its tab, its page.
@@ -258,4 +258,4 @@ TEST(NumberField, TheWheelThatScrollsPastChangesNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::number_fields_test

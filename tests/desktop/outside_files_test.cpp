@@ -9,7 +9,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::outside_files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -250,4 +250,4 @@ TEST_F(ShellTest, AnExerciseOfSomebodyElseIsReadApartAndOpened) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::outside_files_test

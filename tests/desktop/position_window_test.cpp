@@ -10,7 +10,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::position_window_test {
 namespace {
 
 using core::Vec3;
@@ -154,4 +154,4 @@ TEST_F(PositionTest, AToothThatStandsAloneHasNoFingerRest) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::position_window_test

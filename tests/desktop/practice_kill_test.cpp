@@ -15,7 +15,7 @@
 #include "handpiece/base/core/file.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::practice_kill_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -27,7 +27,7 @@ struct Told {
     int cuts = 0;
 };
 
-class KillTest : public ShellTest {
+class PracticeKillTest : public ShellTest {
   protected:
     fs::path folder_ = [] {
         const char* given = std::getenv("HANDPIECE_KILL_FOLDER");
@@ -69,7 +69,7 @@ class KillTest : public ShellTest {
 };
 
 /// Begins the exercise, cuts, finishes now and then, until it is killed.
-TEST_F(KillTest, DISABLED_WorksUntilItIsKilled) {
+TEST_F(PracticeKillTest, DISABLED_WorksUntilItIsKilled) {
     ASSERT_FALSE(folder_.empty());
     startWithTooth();
     for (;;) {
@@ -92,7 +92,7 @@ TEST_F(KillTest, DISABLED_WorksUntilItIsKilled) {
     }
 }
 
-TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
+TEST_F(PracticeKillTest, NothingIsLostHoweverOftenItIsKilled) {
     QTemporaryDir place;
     folder_ = toPath(place.path());
     tasks::Task task = course::blockTask("line", 1);
@@ -111,7 +111,7 @@ TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
         const pid_t child = fork();
         if (child == 0) {
             ::setenv("HANDPIECE_KILL_FOLDER", folder_.c_str(), 1);
-            ::execl("/proc/self/exe", "killed", "--gtest_filter=KillTest.DISABLED_WorksUntilItIsKilled",
+            ::execl("/proc/self/exe", "killed", "--gtest_filter=PracticeKillTest.DISABLED_WorksUntilItIsKilled",
                     "--gtest_also_run_disabled_tests", nullptr);
             ::_exit(127);
         }
@@ -157,4 +157,4 @@ TEST_F(KillTest, NothingIsLostHoweverOftenItIsKilled) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::practice_kill_test

@@ -3,7 +3,7 @@
 // it.
 #include "practice_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::practice_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -856,4 +856,4 @@ TEST_F(PracticeTest, ThePageIsWrittenWithPictures) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::practice_window_test

@@ -9,7 +9,7 @@
 #include "handpiece/base/core/file.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::radiograph_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,4 +103,4 @@ TEST_F(RadiographTest, FollowsTheToothThatIsOpen) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::radiograph_window_test

@@ -7,7 +7,7 @@
 #include "desktop/features/editor/editor_feature.h"
 #include "practice_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::result_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -159,4 +159,4 @@ TEST_F(PracticeTest, TheTeachersOwnWorkPlaysBesideAlsoAfterTheWorkWasResumed) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::result_window_test

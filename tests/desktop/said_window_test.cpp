@@ -12,7 +12,7 @@
 #include "handpiece/model/case/case.h"
 #include "practice_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::said_window_test {
 namespace {
 
 /// A channel, whose floor and width are judged.
@@ -217,4 +217,4 @@ TEST_F(PracticeTest, TheCardTellsWhileOneWorksWhatTheScoreTellsAfterwards) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::said_window_test

@@ -32,7 +32,7 @@
 #include "handpiece/scan/volume/write_scan.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::scan_wizard_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -654,4 +654,4 @@ TEST_F(ScanInWindowTest, CasesAndMeshesAreNoScans) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::scan_wizard_test

@@ -7,7 +7,7 @@
 #include "desktop/features/school/school_feature.h"
 #include "school_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::school_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -149,4 +149,4 @@ TEST_F(SchoolWindowTest, WithoutASchoolNothingIsSaid) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::school_window_test

@@ -17,7 +17,7 @@
 #include "desktop/framework/screen_fit.h"
 #include "practice_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::screen_fit_test {
 namespace {
 
 bool isScrolled(const QWidget* widget) {
@@ -216,4 +216,4 @@ TEST_F(ScreenFitTest, PanelsAreAsTheyWereWhenATinyWindowGrowsAgain) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::screen_fit_test

@@ -5,6 +5,7 @@
 #include <QTemporaryDir>
 
 #include "desktop/framework/application.h"
+#include "support/chosen_tests.h"
 
 namespace {
 
@@ -26,5 +27,5 @@ int main(int argc, char** argv) {
     handpiece::desktop::Application application(argc, argv);
     QApplication::setApplicationName(QStringLiteral("handpiece-test"));
     QApplication::setQuitOnLastWindowClosed(false);
-    return RUN_ALL_TESTS();
+    return handpiece::test::runChosen(argc, argv);
 }

@@ -25,7 +25,7 @@
 #include "handpiece/tick/device/simulated_device.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::shell_parts_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -397,4 +397,4 @@ TEST(CommandLines, WithoutADisplayASentenceAndNoCrash) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::shell_parts_test

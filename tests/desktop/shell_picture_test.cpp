@@ -23,7 +23,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::shell_picture_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -313,4 +313,4 @@ TEST_F(PictureTest, TheForceOfAMouseIsNoDevicesLimit) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::shell_picture_test

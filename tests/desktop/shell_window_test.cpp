@@ -42,7 +42,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::shell_window_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -984,4 +984,4 @@ TEST_F(ShellTest, AfterACrashTheToothComesBack) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::shell_window_test

@@ -18,7 +18,7 @@
 #include "handpiece/app/course/shipped_exercises.h"
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::ten_exercises_test {
 namespace {
 
 class TenExercises : public ShellTest, public ::testing::WithParamInterface<int> {
@@ -158,4 +158,4 @@ TEST_P(TenExercises, IsBegunCutAndFinished) {
 INSTANTIATE_TEST_SUITE_P(All, TenExercises, ::testing::Range(1, 11));
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::ten_exercises_test

@@ -26,7 +26,7 @@ static void bringTranslationsBack() {
     Q_INIT_RESOURCE(translations);
 }
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::translation_test {
 namespace {
 
 using Key = std::pair<QString, QString>;  // context, source
@@ -257,4 +257,4 @@ TEST_F(JapaneseWindow, WithoutItsFileSpeaksEnglish) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::translation_test

@@ -10,7 +10,7 @@
 #include "desktop/picture/key_bindings_dialog.h"
 #include "desktop/picture/latency.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::view_keys_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -192,11 +192,4 @@ TEST(LatencyMeter, FollowsATickThatFallsBehind) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
-
-int main(int argc, char** argv) {
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-    ::testing::InitGoogleTest(&argc, argv);
-    QApplication application(argc, argv);
-    return RUN_ALL_TESTS();
-}
+}  // namespace handpiece::desktop::view_keys_test

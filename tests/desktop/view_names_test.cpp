@@ -8,7 +8,7 @@
 
 #include "shell_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::view_names_test {
 namespace {
 
 class NamesTest : public ShellTest {
@@ -122,4 +122,4 @@ TEST_F(NamesTest, F10OpensTheMenus) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::view_names_test

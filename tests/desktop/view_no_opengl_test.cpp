@@ -8,7 +8,7 @@
 #include "desktop/picture/view_widget.h"
 #include "view_ball.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::view_no_opengl_test {
 namespace {
 
 TEST(ViewWithoutOpenGl, SaysSoAndGoesOn) {
@@ -31,11 +31,4 @@ TEST(ViewWithoutOpenGl, SaysSoAndGoesOn) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
-
-int main(int argc, char** argv) {
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-    ::testing::InitGoogleTest(&argc, argv);
-    QApplication application(argc, argv);
-    return RUN_ALL_TESTS();
-}
+}  // namespace handpiece::desktop::view_no_opengl_test

@@ -16,7 +16,7 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "view_ball.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::view_widget_test {
 namespace {
 
 using core::Vec2;
@@ -853,11 +853,4 @@ TEST(ViewWithoutATooth, TakesEverythingCalmly) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
-
-int main(int argc, char** argv) {
-    qputenv("QT_QPA_PLATFORM", "offscreen");
-    ::testing::InitGoogleTest(&argc, argv);
-    QApplication application(argc, argv);
-    return RUN_ALL_TESTS();
-}
+}  // namespace handpiece::desktop::view_widget_test

@@ -17,7 +17,7 @@
 #include "desktop/picture/measuring.h"
 #include "practice_support.h"
 
-namespace handpiece::desktop {
+namespace handpiece::desktop::window_habits_test {
 namespace {
 
 class WindowHabits : public PracticeTest {
@@ -308,4 +308,4 @@ TEST_F(WindowHabits, AfterACrashTheHandHoldsAsBefore) {
 }
 
 }  // namespace
-}  // namespace handpiece::desktop
+}  // namespace handpiece::desktop::window_habits_test

@@ -18,7 +18,7 @@
 #include "replays.inc"
 #undef REPLAY
 
-namespace handpiece {
+namespace handpiece::replay_test {
 namespace {
 
 struct Replay {
@@ -66,4 +66,4 @@ INSTANTIATE_TEST_SUITE_P(Readers, FuzzReplay, testing::ValuesIn(kReplays),
                          [](const testing::TestParamInfo<Replay>& one) { return one.param.name; });
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::replay_test

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <string>
 
-namespace handpiece {
+namespace handpiece::golden_test {
 namespace {
 
 /// What a child process prints; tests run one session a setting, because both settings are read once a process.
@@ -48,4 +48,4 @@ TEST(Golden, oneThreadAndEveryInstructionSetGiveTheSame) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::golden_test

@@ -14,7 +14,7 @@
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/senses/view/renderer.h"
 
-namespace handpiece::view {
+namespace handpiece::view::picture_test {
 namespace {
 
 constexpr double kMaxRms = 4.0, kMaxShare = 0.01;
@@ -179,4 +179,4 @@ TEST(Picture, aMissingBurIsNoticed) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::picture_test

@@ -6,7 +6,7 @@
 #include "handpiece/base/core/error.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::built_in_motion_test {
 namespace {
 
 using core::Pose;
@@ -61,4 +61,4 @@ TEST(BuiltInMotion, refusesNamesPlacesAndOptionsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::built_in_motion_test

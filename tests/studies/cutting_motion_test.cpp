@@ -7,7 +7,7 @@
 #include "handpiece/base/core/error.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::cutting_motion_test {
 namespace {
 
 using core::Vec3;
@@ -100,4 +100,4 @@ TEST(CuttingMotion, refusesWhatCannotBeCut) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::cutting_motion_test

@@ -14,7 +14,7 @@
 #include "handpiece/tick/loop/loop_run.h"
 #include "tick/force/prism_tooth.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::cutting_passivity_test {
 namespace {
 
 using cases::Tissue;
@@ -124,4 +124,4 @@ TEST(CuttingPassivity, cuttingAndWedgedTheLoopStaysPassive) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::cutting_passivity_test

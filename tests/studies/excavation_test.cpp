@@ -9,7 +9,7 @@
 #include "base/geometry/meshes.h"
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::excavation_test {
 namespace {
 
 using core::Vec3;
@@ -196,4 +196,4 @@ TEST(Excavation, refusesWhereThereIsNothingToReach) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::excavation_test

@@ -8,7 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::passivity_test {
 namespace {
 
 TEST(Passivity, holdsAtTheDefaultsUpToAMillisecondForEveryHandTissueAndRate) {
@@ -75,4 +75,4 @@ TEST(Passivity, refusesAnEmptySweep) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::passivity_test

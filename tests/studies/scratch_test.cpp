@@ -14,7 +14,7 @@
 #include "studies/cut_run.h"
 #include "tick/force/prism_tooth.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::scratch_test {
 namespace {
 
 using cases::Tissue;
@@ -161,4 +161,4 @@ TEST(Scratch, aSoundStainedFissureHoldsWithoutBeingSoft) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::scratch_test

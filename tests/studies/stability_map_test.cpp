@@ -8,7 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
 
-namespace handpiece::studies {
+namespace handpiece::studies::stability_map_test {
 namespace {
 
 TEST(StabilityMap, withTheControllerEveryLoopHolds) {
@@ -78,4 +78,4 @@ TEST(StabilityMap, isTheSameAtAnyThreadCountAndCanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::studies
+}  // namespace handpiece::studies::stability_map_test

@@ -8,7 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace handpiece::test {
+namespace handpiece::test::realtime_trap_test {
 namespace {
 
 class RealtimeTrapTest : public testing::Test {
@@ -57,4 +57,4 @@ TEST_F(RealtimeTrapTest, isQuietWhenDisarmed) {
 }
 
 }  // namespace
-}  // namespace handpiece::test
+}  // namespace handpiece::test::realtime_trap_test

@@ -31,7 +31,7 @@
 #include "support/brute_force_depth.h"
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::real_data_test {
 namespace {
 
 using core::Vec3;
@@ -454,4 +454,4 @@ TEST_F(RealData, aClassOneCavityIsCut) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::real_data_test

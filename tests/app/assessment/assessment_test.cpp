@@ -8,7 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "support/error_of.h"
 
-namespace handpiece::assessment {
+namespace handpiece::assessment::assessment_test {
 namespace {
 
 using testing::ElementsAre;
@@ -136,4 +136,4 @@ TEST(Marks, NumbersAndLabelsAreToldApart) {
 }
 
 }  // namespace
-}  // namespace handpiece::assessment
+}  // namespace handpiece::assessment::assessment_test

@@ -12,7 +12,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::assessment {
+namespace handpiece::assessment::measure_store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -183,4 +183,4 @@ TEST(Rescore, OfWhatIsNoWorkIsRowsWithReasonsAndStopsWhenAsked) {
 }
 
 }  // namespace
-}  // namespace handpiece::assessment
+}  // namespace handpiece::assessment::measure_store_test

@@ -18,7 +18,7 @@
 #include "handpiece/record/session/session_reader.h"
 #include "support/error_of.h"
 
-namespace handpiece::assessment {
+namespace handpiece::assessment::recorded_work_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -421,4 +421,4 @@ TEST_F(Chain, IsOneWorkForAllWhoLook) {
 }
 
 }  // namespace
-}  // namespace handpiece::assessment
+}  // namespace handpiece::assessment::recorded_work_test

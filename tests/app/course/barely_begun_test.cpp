@@ -11,7 +11,7 @@
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/base/core/file.h"
 
-namespace handpiece::course {
+namespace handpiece::course::barely_begun_test {
 namespace {
 
 using core::Vec3;
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(All, ShippedExercise, testing::ValuesIn(shippedExercise
 });
 
 }  // namespace
-}  // namespace handpiece::course
+}  // namespace handpiece::course::barely_begun_test

@@ -11,7 +11,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::course {
+namespace handpiece::course::course_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -199,4 +199,4 @@ TEST(Course, WhatCannotBeJudgedSaysSo) {
 }
 
 }  // namespace
-}  // namespace handpiece::course
+}  // namespace handpiece::course::course_test

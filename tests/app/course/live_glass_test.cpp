@@ -13,7 +13,7 @@
 #include "handpiece/app/simulation/simulation_setup.h"
 #include "handpiece/model/tooth/tooth_model.h"
 
-namespace handpiece::course {
+namespace handpiece::course::live_glass_test {
 namespace {
 
 using core::Vec3;
@@ -108,4 +108,4 @@ TEST_F(LiveGlassTest, TheCardTellsTheNumbersOfTheScoreAndTheirSide) {
 }
 
 }  // namespace
-}  // namespace handpiece::course
+}  // namespace handpiece::course::live_glass_test

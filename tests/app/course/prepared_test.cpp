@@ -10,7 +10,7 @@
 #include "handpiece/base/prepared/prepared_files.h"
 #include "support/random.h"
 
-namespace handpiece::course {
+namespace handpiece::course::prepared_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -99,4 +99,4 @@ TEST_F(Prepared, TheUsersOwnCacheIsAsBefore) {
 }
 
 }  // namespace
-}  // namespace handpiece::course
+}  // namespace handpiece::course::prepared_test

@@ -6,7 +6,7 @@
 #include <map>
 #include <set>
 
-namespace handpiece::exercise {
+namespace handpiece::exercise::permissions_test {
 namespace {
 
 std::set<Operation> locked(const std::vector<std::string>& helps, WorkMode mode = WorkMode::work) {
@@ -95,4 +95,4 @@ TEST(Permissions, TheBurToBeginWithIsAnAllowedOne) {
 }
 
 }  // namespace
-}  // namespace handpiece::exercise
+}  // namespace handpiece::exercise::permissions_test

@@ -12,7 +12,7 @@
 #include "handpiece/base/core/error.h"
 #include "support/random.h"
 
-namespace handpiece::exercise {
+namespace handpiece::exercise::school_defaults_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -170,4 +170,4 @@ TEST(SimulationSettings, keepKnockAndHumAndReadSessionsFromBeforeThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::exercise
+}  // namespace handpiece::exercise::school_defaults_test

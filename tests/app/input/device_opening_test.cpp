@@ -12,7 +12,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::input {
+namespace handpiece::input::device_opening_test {
 namespace {
 
 using core::Quat;
@@ -197,4 +197,4 @@ TEST(DeviceDesk, theSimulatedArmThatIsMeasuredHoldsStill) {
 }
 
 }  // namespace
-}  // namespace handpiece::input
+}  // namespace handpiece::input::device_opening_test

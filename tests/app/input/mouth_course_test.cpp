@@ -13,7 +13,7 @@
 #include "handpiece/assess/hand/hand.h"
 #include "support/random.h"
 
-namespace handpiece::input {
+namespace handpiece::input::mouth_course_test {
 namespace {
 
 using core::Vec2;
@@ -239,4 +239,4 @@ TEST(MouthCourse, pressesAndDragsAtRandom) {
 }
 
 }  // namespace
-}  // namespace handpiece::input
+}  // namespace handpiece::input::mouth_course_test

@@ -9,7 +9,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::input {
+namespace handpiece::input::pointer_controller_test {
 namespace {
 
 using core::Quat;
@@ -608,4 +608,4 @@ TEST(PointerController, whatMakesNoSenseChangesNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::input
+}  // namespace handpiece::input::pointer_controller_test

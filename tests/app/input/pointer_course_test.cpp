@@ -14,7 +14,7 @@
 #include "handpiece/model/instrument/catalogue.h"
 #include "support/random.h"
 
-namespace handpiece::input {
+namespace handpiece::input::pointer_course_test {
 namespace {
 
 using core::Vec2;
@@ -363,4 +363,4 @@ TEST(PointerCourse, atRandom) {
 }
 
 }  // namespace
-}  // namespace handpiece::input
+}  // namespace handpiece::input::pointer_course_test

@@ -10,7 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::input {
+namespace handpiece::input::working_position_test {
 namespace {
 
 using core::Quat;
@@ -203,4 +203,4 @@ TEST(WorkingPosition, TheWholeToothIsSeenFromThere) {
 }
 
 }  // namespace
-}  // namespace handpiece::input
+}  // namespace handpiece::input::working_position_test

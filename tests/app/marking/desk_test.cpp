@@ -28,7 +28,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::marking {
+namespace handpiece::marking::desk_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -799,4 +799,4 @@ TEST(Csv, CellsAreWhatTheyWere) {
 }
 
 }  // namespace
-}  // namespace handpiece::marking
+}  // namespace handpiece::marking::desk_test

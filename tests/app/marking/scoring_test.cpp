@@ -20,7 +20,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::marking {
+namespace handpiece::marking::scoring_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -208,4 +208,4 @@ TEST_F(MarkingFolder, IsCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::marking
+}  // namespace handpiece::marking::scoring_test

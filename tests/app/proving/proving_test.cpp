@@ -18,7 +18,7 @@
 #include "handpiece/record/session/session_writer.h"
 #include "support/error_of.h"
 
-namespace handpiece::proving {
+namespace handpiece::proving::proving_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST(Likeness, FindsAMotionThatIsNearlyTheSameAndNoOther) {
 }
 
 }  // namespace
-}  // namespace handpiece::proving
+}  // namespace handpiece::proving::proving_test

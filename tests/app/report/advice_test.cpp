@@ -11,7 +11,7 @@
 
 #include "handpiece/base/config/words.h"
 
-namespace handpiece::report {
+namespace handpiece::report::advice_test {
 namespace {
 
 using core::Vec3;
@@ -209,4 +209,4 @@ TEST(Critical, SaysWhatHappenedAndNotTheCriterion) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::advice_test

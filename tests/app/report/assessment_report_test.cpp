@@ -12,7 +12,7 @@
 #include "handpiece/app/report/section_outlines.h"
 #include "handpiece/base/config/words.h"
 
-namespace handpiece::report {
+namespace handpiece::report::assessment_report_test {
 namespace {
 
 using core::Vec3;
@@ -163,4 +163,4 @@ TEST(Outlines, LieWhereTheSurfacesLie) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::assessment_report_test

@@ -9,7 +9,7 @@
 #include "handpiece/model/tooth/tooth_model.h"
 #include "handpiece/senses/measure/tooth_probe.h"
 
-namespace handpiece::report {
+namespace handpiece::report::place_section_test {
 namespace {
 
 using core::Vec3;
@@ -95,4 +95,4 @@ TEST(PlaceSection, upIsFromWhereOneWorks) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::place_section_test

@@ -10,7 +10,7 @@
 #include "handpiece/app/report/assessment_words.h"
 #include "handpiece/base/config/words.h"
 
-namespace handpiece::report {
+namespace handpiece::report::reason_words_test {
 namespace {
 
 using config::Words;
@@ -70,4 +70,4 @@ TEST(ReasonWords, SeveralInOneAndWhatHasWordsOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::reason_words_test

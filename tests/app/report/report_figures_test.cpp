@@ -9,7 +9,7 @@
 #include "handpiece/record/session/session_writer.h"
 #include "support/random.h"
 
-namespace handpiece::report {
+namespace handpiece::report::report_figures_test {
 namespace {
 
 TEST(ReportFigures, StayNumbersWhateverTheFileHolds) {
@@ -64,4 +64,4 @@ TEST(ReportFigures, WaysOfWorkingLastUntilTheNextOneIsTold) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::report_figures_test

@@ -7,7 +7,7 @@
 #include "handpiece/app/report/plot.h"
 #include "handpiece/base/config/words.h"
 
-namespace handpiece::report {
+namespace handpiece::report::report_html_test {
 namespace {
 
 fidelity::Report checked() {
@@ -67,4 +67,4 @@ TEST(Plot, ShowsMarksAndHistograms) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::report_html_test

@@ -17,7 +17,7 @@
 #include "handpiece/model/tooth/state_file.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::report {
+namespace handpiece::report::session_review_test {
 namespace {
 
 using simulation::SessionPlayer;
@@ -356,4 +356,4 @@ TEST(SessionReview, ShowsWhatStandsNearAsItIs) {
 }
 
 }  // namespace
-}  // namespace handpiece::report
+}  // namespace handpiece::report::session_review_test

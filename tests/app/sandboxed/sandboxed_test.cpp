@@ -29,7 +29,7 @@
 #include "handpiece/record/session/session_writer.h"
 #include "support/error_of.h"
 
-namespace handpiece::sandboxed {
+namespace handpiece::sandboxed::sandboxed_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -450,4 +450,4 @@ TEST_F(Sandboxed, MutatedSessionsHarmNobody) {
 }
 
 }  // namespace
-}  // namespace handpiece::sandboxed
+}  // namespace handpiece::sandboxed::sandboxed_test

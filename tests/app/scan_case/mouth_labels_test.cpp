@@ -20,7 +20,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::scan_case {
+namespace handpiece::scan_case::mouth_labels_test {
 namespace {
 
 using core::Pose;
@@ -366,4 +366,4 @@ TEST(MouthOfLabels, JawsAndRowsOfTeethAreRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::scan_case
+}  // namespace handpiece::scan_case::mouth_labels_test

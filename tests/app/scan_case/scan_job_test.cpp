@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::scan_case {
+namespace handpiece::scan_case::scan_job_test {
 namespace {
 
 using core::Vec3;
@@ -301,4 +301,4 @@ TEST(ScanRun, KeepsTheFacesThatAFieldCanUse) {
 }
 
 }  // namespace
-}  // namespace handpiece::scan_case
+}  // namespace handpiece::scan_case::scan_job_test

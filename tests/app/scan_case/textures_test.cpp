@@ -19,7 +19,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::scan_case {
+namespace handpiece::scan_case::textures_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ TEST_F(Textures, BoundsAreKept) {
 }
 
 }  // namespace
-}  // namespace handpiece::scan_case
+}  // namespace handpiece::scan_case::textures_test

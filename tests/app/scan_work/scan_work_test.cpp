@@ -18,7 +18,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::scan_work::test {
+namespace handpiece::scan_work::test::scan_work_test {
 namespace {
 
 using ::testing::HasSubstr;
@@ -130,4 +130,4 @@ TEST(ScanWork, BadScansAreRefusedWithWhatAndWhatToDo) {
 }
 
 }  // namespace
-}  // namespace handpiece::scan_work::test
+}  // namespace handpiece::scan_work::test::scan_work_test

@@ -18,7 +18,7 @@
 #include "handpiece/tick/device/passing_device.h"
 #include "support/error_of.h"
 
-namespace handpiece::simulation {
+namespace handpiece::simulation::live_session_test {
 namespace {
 
 /// Waits for a notice; false when it has not come within a minute. What else was told is gone.
@@ -280,4 +280,4 @@ TEST(LiveSession, theLowerButtonHeldClearOfTheToothUndoesOnceAndIsRecorded) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::simulation::live_session_test

@@ -24,7 +24,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::simulation {
+namespace handpiece::simulation::mouth_test {
 namespace {
 
 using core::Pose;
@@ -396,4 +396,4 @@ TEST(Mouth, ASessionCarriesAllThatWasFelt) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::simulation::mouth_test

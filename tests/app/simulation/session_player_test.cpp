@@ -16,7 +16,7 @@
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/record/session/recorder.h"
 
-namespace handpiece::simulation {
+namespace handpiece::simulation::session_player_test {
 namespace {
 
 constexpr SessionPlayer::Settings kUnseen{false, false, {}};
@@ -361,4 +361,4 @@ TEST(SessionPlayer, aSessionWithoutTicksOrToothIsOneError) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::simulation::session_player_test

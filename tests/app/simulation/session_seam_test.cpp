@@ -19,7 +19,7 @@
 #include "handpiece/model/tooth/state_file.h"
 #include "handpiece/record/session/recorder.h"
 
-namespace handpiece::simulation {
+namespace handpiece::simulation::session_seam_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -180,4 +180,4 @@ TEST(SessionSeam, aSeamThatDoesNotFitIsTold) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::simulation::session_seam_test

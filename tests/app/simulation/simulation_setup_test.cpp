@@ -9,7 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "live_session_fixture.h"
 
-namespace handpiece::simulation {
+namespace handpiece::simulation::simulation_setup_test {
 namespace {
 
 /// The settings of a session in which the first `"key": VALUE` after `within` has another value.
@@ -116,4 +116,4 @@ TEST(StationSettingsOfAStranger, NoFigureIsUsedThatCannotBeMeant) {
 }
 
 }  // namespace
-}  // namespace handpiece::simulation
+}  // namespace handpiece::simulation::simulation_setup_test

@@ -14,7 +14,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::statements {
+namespace handpiece::statements::statements_test {
 namespace {
 
 using testing::HasSubstr;
@@ -161,4 +161,4 @@ TEST(Statements, RefuseWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace handpiece::statements
+}  // namespace handpiece::statements::statements_test

@@ -11,7 +11,7 @@
 #include "handpiece/model/case/package.h"
 #include "support/error_of.h"
 
-namespace handpiece::tables {
+namespace handpiece::tables::tables_test {
 namespace {
 
 using testing::HasSubstr;
@@ -79,4 +79,4 @@ TEST(TablesTest, ZipHasAllOfThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::tables
+}  // namespace handpiece::tables::tables_test

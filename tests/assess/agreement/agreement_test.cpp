@@ -12,7 +12,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::agreement {
+namespace handpiece::agreement::agreement_test {
 namespace {
 
 constexpr double kFour = 0.5e-4;
@@ -308,4 +308,4 @@ TEST(Bootstrap, CoversAMeanAsOftenAsItSays) {
 }
 
 }  // namespace
-}  // namespace handpiece::agreement
+}  // namespace handpiece::agreement::agreement_test

@@ -12,7 +12,7 @@
 #include "handpiece/model/starter/block.h"
 #include "support/error_of.h"
 
-namespace handpiece::draft {
+namespace handpiece::draft::draft_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -367,4 +367,4 @@ TEST(Problems, AreSaidInEveryLanguage) {
 }
 
 }  // namespace
-}  // namespace handpiece::draft
+}  // namespace handpiece::draft::draft_test

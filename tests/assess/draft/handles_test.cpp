@@ -13,7 +13,7 @@
 #include "handpiece/model/lesion/lesion.h"
 #include "handpiece/model/starter/block.h"
 
-namespace handpiece::draft {
+namespace handpiece::draft::handles_test {
 namespace {
 
 using preparation::Laid;
@@ -193,4 +193,4 @@ TEST(HandleValues, LieOnStepsAndWithinTheTemplate) {
 }
 
 }  // namespace
-}  // namespace handpiece::draft
+}  // namespace handpiece::draft::handles_test

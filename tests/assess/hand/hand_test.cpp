@@ -15,7 +15,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::hand {
+namespace handpiece::hand::hand_test {
 namespace {
 
 using core::Vec3;
@@ -459,4 +459,4 @@ TEST(Hand, WithNumbersThatAreNoneIsStillMeasured) {
 }
 
 }  // namespace
-}  // namespace handpiece::hand
+}  // namespace handpiece::hand::hand_test

@@ -12,7 +12,7 @@
 #include "assess/measures/analytic.h"
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::measures {
+namespace handpiece::measures::cavity_test {
 namespace {
 
 using handpiece::test::uniform;
@@ -150,4 +150,4 @@ TEST(Cavity, boxesAtThreeVoxelsInTurnedGrids) {
 }
 
 }  // namespace
-}  // namespace handpiece::measures
+}  // namespace handpiece::measures::cavity_test

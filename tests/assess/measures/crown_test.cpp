@@ -9,7 +9,7 @@
 
 #include "assess/measures/analytic.h"
 
-namespace handpiece::measures {
+namespace handpiece::measures::crown_test {
 namespace {
 
 using handpiece::test::uniform;
@@ -77,4 +77,4 @@ TEST(Crown, conesWithAChamferInTurnedGrids) {
 }
 
 }  // namespace
-}  // namespace handpiece::measures
+}  // namespace handpiece::measures::crown_test

@@ -12,7 +12,7 @@
 #include "support/error_of.h"
 #include "support/small_molar.h"
 
-namespace handpiece::measures {
+namespace handpiece::measures::features_test {
 namespace {
 
 using cases::Tissue;
@@ -485,4 +485,4 @@ TEST(Molar, aCavityInAToothIsAsItWasCut) {
 }
 
 }  // namespace
-}  // namespace handpiece::measures
+}  // namespace handpiece::measures::features_test

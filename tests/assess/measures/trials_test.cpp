@@ -4,7 +4,7 @@
 
 #include "assess/measures/trials.h"
 
-namespace handpiece::measures {
+namespace handpiece::measures::trials_test {
 namespace {
 
 TEST(Trials, everyMeasureWithinItsBound) {
@@ -49,4 +49,4 @@ TEST(Trials, eachFaultIsFoundAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace handpiece::measures
+}  // namespace handpiece::measures::trials_test

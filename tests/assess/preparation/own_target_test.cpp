@@ -17,7 +17,7 @@
 #include "support/cut_support.h"
 #include "support/error_of.h"
 
-namespace handpiece::preparation {
+namespace handpiece::preparation::own_target_test {
 namespace {
 
 using core::Vec3;
@@ -380,4 +380,4 @@ TEST_F(Painted, BadOnesAreToldInOneLine) {
 }
 
 }  // namespace
-}  // namespace handpiece::preparation
+}  // namespace handpiece::preparation::own_target_test

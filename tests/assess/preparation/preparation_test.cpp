@@ -16,7 +16,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::preparation {
+namespace handpiece::preparation::preparation_test {
 namespace {
 
 using core::Vec3;
@@ -485,4 +485,4 @@ TEST(ZoneSurfaces, HoldWhatTheZonesSay) {
 }
 
 }  // namespace
-}  // namespace handpiece::preparation
+}  // namespace handpiece::preparation::preparation_test

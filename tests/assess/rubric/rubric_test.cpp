@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::rubric {
+namespace handpiece::rubric::rubric_test {
 namespace {
 
 using test::errorOf;
@@ -423,4 +423,4 @@ TEST(Rubric, ComesBackFromWhatIsWritten) {
 }
 
 }  // namespace
-}  // namespace handpiece::rubric
+}  // namespace handpiece::rubric::rubric_test

@@ -15,7 +15,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::score {
+namespace handpiece::score::score_test {
 namespace {
 
 using measures::Measured;
@@ -648,4 +648,4 @@ TEST(Attempts, MeanSpreadAndCurve) {
 }
 
 }  // namespace
-}  // namespace handpiece::score
+}  // namespace handpiece::score::score_test

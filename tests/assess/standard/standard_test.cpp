@@ -8,7 +8,7 @@
 #include "handpiece/assess/standard/standard.h"
 #include "support/error_of.h"
 
-namespace handpiece::standard {
+namespace handpiece::standard::standard_test {
 namespace {
 
 using testing::ElementsAre;
@@ -90,4 +90,4 @@ TEST(BorderlineTest, IsExactOnALineAndSaysWhyThereIsNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::standard
+}  // namespace handpiece::standard::standard_test

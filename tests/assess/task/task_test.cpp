@@ -12,7 +12,7 @@
 #include "handpiece/model/starter/block.h"
 #include "support/error_of.h"
 
-namespace handpiece::tasks {
+namespace handpiece::tasks::task_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -264,4 +264,4 @@ TEST_F(TaskFile, ATargetBesideTheToothIsTold) {
 }
 
 }  // namespace
-}  // namespace handpiece::tasks
+}  // namespace handpiece::tasks::task_test

@@ -15,7 +15,7 @@
 #include "support/cut_support.h"
 #include "support/error_of.h"
 
-namespace handpiece::zones {
+namespace handpiece::zones::zones_test {
 namespace {
 
 using core::Vec2;
@@ -207,4 +207,4 @@ TEST(Outline, HullHoldsItsPoints) {
 }
 
 }  // namespace
-}  // namespace handpiece::zones
+}  // namespace handpiece::zones::zones_test

@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-namespace handpiece::config {
+namespace handpiece::config::outside_json_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -58,4 +58,4 @@ TEST(OutsideJson, whatIsWellIsReadAsEver) {
 }
 
 }  // namespace
-}  // namespace handpiece::config
+}  // namespace handpiece::config::outside_json_test

@@ -7,7 +7,7 @@
 #include "handpiece/base/core/error.h"
 #include "support/error_of.h"
 
-namespace handpiece::config {
+namespace handpiece::config::table_test {
 namespace {
 
 using test::errorOf;
@@ -127,4 +127,4 @@ TEST(Table, OnlyTextsOfDecentSizeAndPlainFilesAreRead) {
 }
 
 }  // namespace
-}  // namespace handpiece::config
+}  // namespace handpiece::config::table_test

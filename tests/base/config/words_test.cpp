@@ -15,7 +15,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::config {
+namespace handpiece::config::words_test {
 namespace {
 
 /// Number and format of each place: "0:.2f".
@@ -154,4 +154,4 @@ TEST(Words, TheEnvironmentChooses) {
 }
 
 }  // namespace
-}  // namespace handpiece::config
+}  // namespace handpiece::config::words_test

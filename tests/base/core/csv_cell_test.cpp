@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace handpiece::core {
+namespace handpiece::core::csv_cell_test {
 namespace {
 
 TEST(CsvCell, IsNoFormula) {
@@ -25,4 +25,4 @@ TEST(CsvCell, IsOneCell) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::csv_cell_test

@@ -14,7 +14,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::core {
+namespace handpiece::core::file_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -194,4 +194,4 @@ TEST(AnyError, becomesOneLineWithWhatAndWhere) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::file_test

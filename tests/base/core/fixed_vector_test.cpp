@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace handpiece::core {
+namespace handpiece::core::fixed_vector_test {
 namespace {
 
 TEST(FixedVector, countsWhatDoesNotFit) {
@@ -24,4 +24,4 @@ TEST(FixedVector, countsWhatDoesNotFit) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::fixed_vector_test

@@ -11,7 +11,7 @@
 #include "handpiece/base/core/hash_text.h"
 #include "support/random.h"
 
-namespace handpiece::core {
+namespace handpiece::core::hash_test {
 namespace {
 
 std::uint64_t hashOf(std::string_view text) {
@@ -71,4 +71,4 @@ TEST(Hash, spreadsItsBits) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::hash_test

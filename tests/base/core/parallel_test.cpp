@@ -10,7 +10,7 @@
 
 #include "handpiece/base/core/progress.h"
 
-namespace handpiece::core {
+namespace handpiece::core::parallel_test {
 namespace {
 
 TEST(ParallelFor, visitsEveryIndexOnceAtAnyThreadCount) {
@@ -79,4 +79,4 @@ TEST(Progress, cancelsByAnError) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::parallel_test

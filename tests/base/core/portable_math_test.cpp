@@ -15,7 +15,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::core {
+namespace handpiece::core::portable_math_test {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity(), kNan = std::numeric_limits<double>::quiet_NaN();
@@ -256,4 +256,4 @@ TEST(PortableMath, specialValuesAreThoseOfC) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::portable_math_test

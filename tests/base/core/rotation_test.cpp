@@ -8,7 +8,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::core {
+namespace handpiece::core::rotation_test {
 namespace {
 
 TEST(Rotation, isEigens) {
@@ -34,4 +34,4 @@ TEST(Rotation, halfATurn) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::rotation_test

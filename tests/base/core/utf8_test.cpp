@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-namespace handpiece::core {
+namespace handpiece::core::utf8_test {
 namespace {
 
 /// As RFC 3629 writes a number.
@@ -70,4 +70,4 @@ TEST(Utf8, WhatIsPrintedHoldsNoControlCharacters) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::utf8_test

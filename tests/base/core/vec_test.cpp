@@ -5,7 +5,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::core {
+namespace handpiece::core::vec_test {
 namespace {
 
 TEST(Pose, inverseUndoesIt) {
@@ -42,4 +42,4 @@ TEST(Box, growsRoundPoints) {
 }
 
 }  // namespace
-}  // namespace handpiece::core
+}  // namespace handpiece::core::vec_test

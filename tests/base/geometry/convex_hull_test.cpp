@@ -8,7 +8,7 @@
 #include "base/geometry/convex_shapes.h"
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::convex_hull_test {
 namespace {
 
 using core::Vec3;
@@ -131,4 +131,4 @@ TEST(ConvexHull, refusesPointsWithoutVolume) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::convex_hull_test

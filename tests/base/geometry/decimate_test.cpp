@@ -12,7 +12,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::decimate_test {
 namespace {
 
 using core::Vec3;
@@ -193,4 +193,4 @@ TEST(Decimate, RefusesWhatIsNotASurface) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::decimate_test

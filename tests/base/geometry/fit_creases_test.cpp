@@ -14,7 +14,7 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::fit_creases_test {
 namespace {
 
 using core::Vec3;
@@ -103,4 +103,4 @@ TEST(FitCreases, LeavesWhatDoesNotBendAndGivesTheSameBytesOnAnyThreads) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::fit_creases_test

@@ -10,7 +10,7 @@
 #include "handpiece/base/geometry/epa.h"
 #include "handpiece/base/geometry/gjk.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::gjk_epa_test {
 namespace {
 
 using core::Pose;
@@ -326,4 +326,4 @@ TEST(GjkEpa, theAnswerDoesNotDependOnWhatWasAskedBefore) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::gjk_epa_test

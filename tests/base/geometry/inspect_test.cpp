@@ -8,7 +8,7 @@
 #include "handpiece/base/geometry/mesh_io.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::inspect_test {
 namespace {
 
 using core::Vec3;
@@ -178,4 +178,4 @@ TEST(Inspect, RealTools) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::inspect_test

@@ -12,7 +12,7 @@
 #include "handpiece/base/geometry/inspect.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::isosurface_test {
 namespace {
 
 using core::Vec3;
@@ -197,4 +197,4 @@ TEST(Isosurface, RefusesWhatMakesNoSense) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::isosurface_test

@@ -17,7 +17,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::mesh_colours_test {
 namespace {
 
 using core::Vec3;
@@ -329,4 +329,4 @@ TEST(MeshColours, AMendedSurfaceKeepsThemAndAHoleGetsThoseOfItsBorder) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::mesh_colours_test

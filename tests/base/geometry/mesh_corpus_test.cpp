@@ -21,7 +21,7 @@
 #include "support/dice.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::mesh_corpus_test {
 namespace {
 
 using core::Vec2;
@@ -283,4 +283,4 @@ TEST(MeshCorpus, AsOtherProgramsWriteThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::mesh_corpus_test

@@ -10,7 +10,7 @@
 #include "base/geometry/meshes.h"
 #include "handpiece/base/geometry/mesh_io.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::mesh_glued_test {
 namespace {
 
 using testing::ElementsAre;
@@ -135,4 +135,4 @@ TEST(GluedMeshes, TwentySixStlsAreNoWrongCount) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::mesh_glued_test

@@ -22,7 +22,7 @@
 #define TINYOBJLOADER_USE_DOUBLE
 #include <tiny_obj_loader.h>
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::mesh_io_test {
 namespace {
 
 using core::Vec3;
@@ -664,4 +664,4 @@ TEST(MeshIo, RealToolsAreRead) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::mesh_io_test

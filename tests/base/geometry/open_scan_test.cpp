@@ -16,7 +16,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/model/case/case.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::open_scan_test {
 namespace {
 
 using core::Vec3;
@@ -181,4 +181,4 @@ TEST(OpenScans, WhatCannotBeClosedIsRefusedWithTheReason) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::open_scan_test

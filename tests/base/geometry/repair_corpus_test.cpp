@@ -11,7 +11,7 @@
 #include "handpiece/model/starter/starter.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::repair_corpus_test {
 namespace {
 
 using core::Vec3;
@@ -158,4 +158,4 @@ TEST(RepairCorpus, AToothWithAHoleAndSomethingStuckToItStaysATooth) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::repair_corpus_test

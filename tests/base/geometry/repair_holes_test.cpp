@@ -6,7 +6,7 @@
 
 #include "handpiece/base/geometry/inspect.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::repair_holes_test {
 namespace {
 
 using core::Vec3;
@@ -55,4 +55,4 @@ TEST(CloseHoles, NeedNoStackForManyPieces) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::repair_holes_test

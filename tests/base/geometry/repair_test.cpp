@@ -10,7 +10,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::repair_test {
 namespace {
 
 using core::Vec3;
@@ -362,4 +362,4 @@ TEST(Repair, RealHandpieceHead) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::repair_test

@@ -10,7 +10,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::self_intersection_test {
 namespace {
 
 using core::Vec3;
@@ -148,4 +148,4 @@ TEST(SelfIntersection, SameAtAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::self_intersection_test

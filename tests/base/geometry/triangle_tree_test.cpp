@@ -11,7 +11,7 @@
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
-namespace handpiece::geometry {
+namespace handpiece::geometry::triangle_tree_test {
 namespace {
 
 using core::Vec3;
@@ -249,4 +249,4 @@ TEST(PointsBeyond, AreThoseOfEachDistance) {
 }
 
 }  // namespace
-}  // namespace handpiece::geometry
+}  // namespace handpiece::geometry::triangle_tree_test

@@ -10,7 +10,7 @@
 #include "handpiece/base/prepared/packed_bytes.h"
 #include "support/random.h"
 
-namespace handpiece::prepared {
+namespace handpiece::prepared::prepared_files_test {
 namespace {
 
 std::vector<std::byte> bytesOf(std::string_view text) {
@@ -103,4 +103,4 @@ TEST(PackedBytes, ComeBackAndDamageIsSeen) {
 }
 
 }  // namespace
-}  // namespace handpiece::prepared
+}  // namespace handpiece::prepared::prepared_files_test

@@ -7,7 +7,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::rt {
+namespace handpiece::rt::clock_test {
 namespace {
 
 /// How often this thread has given up its processor of its own accord.
@@ -82,4 +82,4 @@ TEST(PeriodicClock, refusesPeriodsThatCannotBeKept) {
 }
 
 }  // namespace
-}  // namespace handpiece::rt
+}  // namespace handpiece::rt::clock_test

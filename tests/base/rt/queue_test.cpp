@@ -9,7 +9,7 @@
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/base/rt/triple_buffer.h"
 
-namespace handpiece::rt {
+namespace handpiece::rt::queue_test {
 namespace {
 
 /// Big enough to be torn when copied by two threads at once.
@@ -123,4 +123,4 @@ TEST(TripleBuffer, readsTheLatestWholeValue) {
 }
 
 }  // namespace
-}  // namespace handpiece::rt
+}  // namespace handpiece::rt::queue_test

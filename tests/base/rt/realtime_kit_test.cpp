@@ -27,7 +27,7 @@
 
 extern char** environ;
 
-namespace handpiece::rt {
+namespace handpiece::rt::realtime_kit_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -274,4 +274,4 @@ TEST_F(RealtimeKit, mayBeBehindABusThatStands) {
 }
 
 }  // namespace
-}  // namespace handpiece::rt
+}  // namespace handpiece::rt::realtime_kit_test

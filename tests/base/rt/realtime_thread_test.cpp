@@ -14,7 +14,7 @@
 
 #include "handpiece/base/rt/clock.h"
 
-namespace handpiece::rt {
+namespace handpiece::rt::realtime_thread_test {
 namespace {
 
 bool hasRealTime() {
@@ -133,4 +133,4 @@ TEST(RealtimeThreadDeathTest, asksForNothingUnderALimitThatWouldEndTheProgram) {
 }
 
 }  // namespace
-}  // namespace handpiece::rt
+}  // namespace handpiece::rt::realtime_thread_test

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <thread>
 
-namespace handpiece::rt {
+namespace handpiece::rt::staged_test {
 namespace {
 
 struct Counted {
@@ -78,4 +78,4 @@ TEST(Staged, freesNothingOnTheTickBetweenThreads) {
 }
 
 }  // namespace
-}  // namespace handpiece::rt
+}  // namespace handpiece::rt::staged_test

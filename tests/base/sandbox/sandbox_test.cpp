@@ -16,7 +16,7 @@
 #include "handpiece/base/core/file.h"
 #include "support/error_of.h"
 
-namespace handpiece::sandbox {
+namespace handpiece::sandbox::sandbox_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -198,4 +198,4 @@ TEST_F(Sandbox, EndsWithWhoAsked) {
 }
 
 }  // namespace
-}  // namespace handpiece::sandbox
+}  // namespace handpiece::sandbox::sandbox_test

@@ -17,7 +17,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::falcon_test {
 namespace {
 
 using core::Vec3;
@@ -301,4 +301,4 @@ TEST(FalconWords, everyCodeHasThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::falcon_test

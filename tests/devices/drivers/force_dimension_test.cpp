@@ -17,7 +17,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::force_dimension_test {
 namespace {
 
 using core::Vec3;
@@ -344,4 +344,4 @@ TEST(ServoThread, keepsToItsRangeAndShutsItsDoor) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::force_dimension_test

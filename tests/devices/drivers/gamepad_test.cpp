@@ -8,7 +8,7 @@
 #include "handpiece/devices/drivers/sdl_library.h"
 #include "support/error_of.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::gamepad_test {
 namespace {
 
 using link::DeviceFault;
@@ -131,4 +131,4 @@ TEST(SdlMissing, isToldWithItsRemedy) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::gamepad_test

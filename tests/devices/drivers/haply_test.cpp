@@ -17,7 +17,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::haply_test {
 namespace {
 
 using link::DeviceFault;
@@ -483,4 +483,4 @@ TEST(HaplyScanner, whatIsWrittenIsNoMoreThanAForce) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::haply_test

@@ -16,7 +16,7 @@
 #include "support/random.h"
 #include "support/small_molar.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::openhaptics_cutting_test {
 namespace {
 
 using core::Quat;
@@ -124,4 +124,4 @@ TEST(OpenHapticsEndToEnd, aHandCutsACavityAndFeelsIt) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::openhaptics_cutting_test

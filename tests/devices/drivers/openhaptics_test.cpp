@@ -13,7 +13,7 @@
 #include "handpiece/base/core/error.h"
 #include "support/error_of.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::openhaptics_test {
 namespace {
 
 using core::Vec3;
@@ -319,4 +319,4 @@ TEST(Catalogue, namesWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::openhaptics_test

@@ -7,7 +7,7 @@
 #include "handpiece/devices/drivers/pedal.h"
 #include "support/error_of.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::pedal_test {
 namespace {
 
 using test::errorOf;
@@ -112,4 +112,4 @@ TEST_F(Pedal, aSwitchIsUpOrDown) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::pedal_test

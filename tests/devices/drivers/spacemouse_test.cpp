@@ -9,7 +9,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::drivers {
+namespace handpiece::drivers::spacemouse_test {
 namespace {
 
 using core::Quat;
@@ -183,4 +183,4 @@ TEST_F(SpaceMouse, aDaemonThatIsStartedAgainIsTakenUpAgainWithNothingPressed) {
 }
 
 }  // namespace
-}  // namespace handpiece::drivers
+}  // namespace handpiece::drivers::spacemouse_test

@@ -9,7 +9,7 @@
 #include "handpiece/devices/safety/injector.h"
 #include "support/error_of.h"
 
-namespace handpiece::fidelity {
+namespace handpiece::fidelity::fidelity_test {
 namespace {
 
 /// An arm held still, in virtual time.
@@ -203,4 +203,4 @@ TEST(Fidelity, settingsOutOfRangeAreRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::fidelity
+}  // namespace handpiece::fidelity::fidelity_test

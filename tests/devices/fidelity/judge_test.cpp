@@ -8,7 +8,7 @@
 #include "handpiece/devices/fidelity/recording.h"
 #include "support/random.h"
 
-namespace handpiece::fidelity {
+namespace handpiece::fidelity::judge_test {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
@@ -192,4 +192,4 @@ TEST(FidelityReport, EveryFindingHasItsWordsInEveryLanguage) {
 }
 
 }  // namespace
-}  // namespace handpiece::fidelity
+}  // namespace handpiece::fidelity::judge_test

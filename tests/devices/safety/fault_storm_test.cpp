@@ -10,7 +10,7 @@
 #include "storm.h"
 #include "support/random.h"
 
-namespace handpiece::safety {
+namespace handpiece::safety::fault_storm_test {
 namespace {
 
 TEST(FaultStorm, whileCuttingEveryFaultEndsInZeroForce) {
@@ -91,4 +91,4 @@ TEST(FaultStorm, withThreadsAndAWallClock) {
 }
 
 }  // namespace
-}  // namespace handpiece::safety
+}  // namespace handpiece::safety::fault_storm_test

@@ -14,7 +14,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::safety {
+namespace handpiece::safety::gate_test {
 namespace {
 
 using link::DeviceFault;
@@ -486,4 +486,4 @@ TEST(Gate, refusesSettingsThatGuardNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::safety
+}  // namespace handpiece::safety::gate_test

@@ -16,7 +16,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::safety {
+namespace handpiece::safety::guarded_device_test {
 namespace {
 
 using core::Quat;
@@ -461,4 +461,4 @@ TEST(SimulatedDriver, runsOnTheWallClock) {
 }
 
 }  // namespace
-}  // namespace handpiece::safety
+}  // namespace handpiece::safety::guarded_device_test

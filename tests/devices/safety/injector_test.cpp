@@ -12,7 +12,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::safety {
+namespace handpiece::safety::injector_test {
 namespace {
 
 using link::DeviceFault;
@@ -200,4 +200,4 @@ TEST(Faults, theLogTellsWhatTheyCameTo) {
 }
 
 }  // namespace
-}  // namespace handpiece::safety
+}  // namespace handpiece::safety::injector_test

@@ -10,7 +10,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::safety {
+namespace handpiece::safety::input_device_test {
 namespace {
 
 using core::Quat;
@@ -339,4 +339,4 @@ TEST_F(InputDeviceTest, neitherTickNorServoTakesMemoryLocksOrWaits) {
 }
 
 }  // namespace
-}  // namespace handpiece::safety
+}  // namespace handpiece::safety::input_device_test

@@ -9,7 +9,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::workspace {
+namespace handpiece::workspace::placing_test {
 namespace {
 
 using core::Quat;
@@ -221,4 +221,4 @@ TEST_F(PlacingTest, whatCannotBeIsRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::workspace
+}  // namespace handpiece::workspace::placing_test

@@ -11,7 +11,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::workspace {
+namespace handpiece::workspace::profile_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -168,4 +168,4 @@ TEST_F(ProfileTest, liesWhereTheDesktopKeepsSettings) {
 }
 
 }  // namespace
-}  // namespace handpiece::workspace
+}  // namespace handpiece::workspace::profile_test

@@ -13,7 +13,7 @@
 #include "handpiece/model/case/package.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::attempt_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -359,4 +359,4 @@ TEST_F(AttemptTest, NothingSenselessIsSaved) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::attempt_test

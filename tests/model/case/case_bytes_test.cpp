@@ -11,7 +11,7 @@
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::case_bytes_test {
 namespace {
 
 Case ballInBall() {
@@ -158,4 +158,4 @@ TEST(CaseBytes, refusesWhatIsCutOffOrDamaged) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::case_bytes_test

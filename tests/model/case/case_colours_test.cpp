@@ -15,7 +15,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::case_colours_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -146,4 +146,4 @@ TEST(CaseColours, aSessionHoldsTheToothWithoutThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::case_colours_test

@@ -12,7 +12,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::case_exercise_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -169,4 +169,4 @@ TEST(CaseCheck, TellsWhatIsMissingOrNoSolid) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::case_exercise_test

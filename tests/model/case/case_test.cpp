@@ -16,7 +16,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::case_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -395,4 +395,4 @@ TEST_F(CaseTest, FollowsNoLinkOutOfItsFolder) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::case_test

@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::edit_landmarks_test {
 namespace {
 
 using core::Vec3;
@@ -134,4 +134,4 @@ TEST_F(WrittenLandmarks, AreRefusedWhereTheyCannotBeKept) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::edit_landmarks_test

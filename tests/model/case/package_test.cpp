@@ -11,7 +11,7 @@
 #include "handpiece/base/core/file.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::package_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -153,4 +153,4 @@ TEST_F(PackageTest, AFailureLeavesTheOldFile) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::package_test

@@ -11,7 +11,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::ray_tissues_test {
 namespace {
 
 using Role = RaySurface::Role;
@@ -130,4 +130,4 @@ TEST(RayTissues, ASurfaceThatIsNotLeftIsOpen) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::ray_tissues_test

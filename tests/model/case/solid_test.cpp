@@ -8,7 +8,7 @@
 #include "handpiece/model/tooth/tooth_model.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::solid_test {
 namespace {
 
 using geometry::TriangleMesh;
@@ -85,4 +85,4 @@ TEST(RequireSolid, RealTools) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::solid_test

@@ -13,7 +13,7 @@
 #include "handpiece/base/core/file.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::tissue_test {
 namespace {
 
 TEST(Tissue, EveryNameLeadsBackToItsTissue) {
@@ -172,4 +172,4 @@ TEST(Tissue, AWrongTableIsToldWithLineTissueAndValue) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::tissue_test

@@ -10,7 +10,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::cases {
+namespace handpiece::cases::work_on_test {
 namespace {
 
 using core::Pose;
@@ -170,4 +170,4 @@ TEST(WorkOn, TheOpeningIsKeptInFiles) {
 }
 
 }  // namespace
-}  // namespace handpiece::cases
+}  // namespace handpiece::cases::work_on_test

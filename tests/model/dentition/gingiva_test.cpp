@@ -12,7 +12,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "model/dentition/mouths.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::gingiva_test {
 namespace {
 
 using core::Vec2;
@@ -201,4 +201,4 @@ TEST(Gingiva, FillsEachEmbrasureAndFollowsEachJunction) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::gingiva_test

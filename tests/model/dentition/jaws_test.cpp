@@ -7,7 +7,7 @@
 #include "handpiece/model/case/work_on.h"
 #include "model/dentition/mouths.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::jaws_test {
 namespace {
 
 using core::Pose;
@@ -73,4 +73,4 @@ TEST(Jaws, OpenWithoutFrontTeethAndNotWithoutAnArch) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::jaws_test

@@ -22,7 +22,7 @@
 #include "handpiece/model/instrument/turbine.h"
 #include "model/dentition/mouths.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::mouth_test {
 namespace {
 
 constexpr std::uint64_t kSeeds[] = {1, 2, 3};
@@ -467,4 +467,4 @@ TEST(Mouth, RefusesPlainly) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::mouth_test

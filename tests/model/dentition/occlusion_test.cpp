@@ -15,7 +15,7 @@
 #include "handpiece/base/geometry/self_intersection.h"
 #include "model/dentition/mouths.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::occlusion_test {
 namespace {
 
 /// A contact: where antagonists are within 20 um; places nearer to each other than 0.7 mm are one.
@@ -201,4 +201,4 @@ TEST(Occlusion, RefusesLessThanAMouth) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::occlusion_test

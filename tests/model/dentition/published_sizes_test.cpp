@@ -13,7 +13,7 @@
 
 #include "handpiece/model/dentition/tooth_form.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::published_sizes_test {
 namespace {
 using cases::Landmark;
 using cases::LandmarkKind;
@@ -227,4 +227,4 @@ TEST(PublishedSizes, ChambersShrinkWithAge) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::published_sizes_test

@@ -14,7 +14,7 @@
 #include "handpiece/scan/volume/read_scan.h"
 #include "support/random.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::real_molar_test {
 namespace {
 using core::Vec3;
 using geometry::TriangleMesh;
@@ -234,4 +234,4 @@ TEST(RealMolar, CrownsOfMolarsAreLikeIt) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::real_molar_test

@@ -16,7 +16,7 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "support/random.h"
 
-namespace handpiece::dentition {
+namespace handpiece::dentition::tooth_form_test {
 namespace {
 using cases::Landmark;
 using cases::LandmarkKind;
@@ -606,4 +606,4 @@ TEST(MakeTooth, CanBeStopped) {
 }
 
 }  // namespace
-}  // namespace handpiece::dentition
+}  // namespace handpiece::dentition::tooth_form_test

@@ -7,7 +7,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "support/random.h"
 
-namespace handpiece::field {
+namespace handpiece::field::distance_field_test {
 namespace {
 
 using core::Box;
@@ -191,4 +191,4 @@ TEST(DistanceField, CancelledWorkStops) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::distance_field_test

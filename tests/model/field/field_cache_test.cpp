@@ -15,7 +15,7 @@
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
-namespace handpiece::field {
+namespace handpiece::field::field_cache_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -340,4 +340,4 @@ TEST(FieldCache, TheFirstPlaceThatCanBeWritten) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::field_cache_test

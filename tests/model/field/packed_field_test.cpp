@@ -8,7 +8,7 @@
 #include "handpiece/model/field/tissue_cache.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::field {
+namespace handpiece::field::packed_field_test {
 namespace {
 
 constexpr std::uint64_t kKey = 0x1234567890abcdefull;
@@ -80,4 +80,4 @@ TEST(PackedField, TissuesComeBackAsWell) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::packed_field_test

@@ -13,7 +13,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::field {
+namespace handpiece::field::sharp_lookup_test {
 namespace {
 
 using core::Vec3;
@@ -193,4 +193,4 @@ TEST(SharpLookup, isTheSameToTheBitAtEveryInstructionSetAndFollowsAChange) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::sharp_lookup_test

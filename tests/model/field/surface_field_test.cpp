@@ -17,7 +17,7 @@
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
-namespace handpiece::field {
+namespace handpiece::field::surface_field_test {
 namespace {
 
 using core::Vec3;
@@ -325,4 +325,4 @@ TEST(SurfaceField, CancelledWorkStops) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::surface_field_test

@@ -15,7 +15,7 @@
 #include "support/closed_meshes.h"
 #include "support/cut_support.h"
 
-namespace handpiece::field {
+namespace handpiece::field::tissue_map_test {
 namespace {
 
 using core::Vec3;
@@ -289,7 +289,7 @@ TEST(TissueCache, SumsThatAreRightProveNothing) {
     EXPECT_FALSE(readTissueFile(file, field, 7, known)) << "a file that anybody may have written";
 }
 
-TEST(LoadModel, KeepsTheTissuesOfACase) {
+TEST(TissueMap, IsOfACasesTissues) {
     const handpiece::test::TemporaryFolder folder;
     cases::Case toothCase;
     toothCase.name = "bumpy";
@@ -326,4 +326,4 @@ TEST(LoadModel, KeepsTheTissuesOfACase) {
 }
 
 }  // namespace
-}  // namespace handpiece::field
+}  // namespace handpiece::field::tissue_map_test

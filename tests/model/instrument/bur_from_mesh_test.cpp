@@ -11,7 +11,7 @@
 #include "handpiece/model/instrument/envelope.h"
 #include "outlines.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::bur_from_mesh_test {
 namespace {
 
 using core::Vec3;
@@ -199,4 +199,4 @@ TEST(BurFromMesh, ATaperedBurOfRealData) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::bur_from_mesh_test

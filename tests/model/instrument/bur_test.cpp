@@ -9,7 +9,7 @@
 #include "handpiece/model/instrument/piece.h"
 #include "outlines.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::bur_test {
 namespace {
 
 using core::Vec2;
@@ -78,4 +78,4 @@ TEST(Bur, EndsAreRoundedTogetherSoThatCornersHaveOnePlace) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::bur_test

@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::catalogue_test {
 namespace {
 
 using test::errorOf;
@@ -171,4 +171,4 @@ TEST_F(OwnBurs, WhatThereIsNotIsToldInOneLine) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::catalogue_test

@@ -9,7 +9,7 @@
 #include "handpiece/model/instrument/piece.h"
 #include "outlines.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::medial_axis_test {
 namespace {
 
 using core::Vec2;
@@ -173,4 +173,4 @@ TEST(MedialAxis, SimpleBursNeedFewBalls) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::medial_axis_test

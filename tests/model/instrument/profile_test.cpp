@@ -10,7 +10,7 @@
 #include "handpiece/model/instrument/piece.h"
 #include "outlines.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::profile_test {
 namespace {
 
 using core::Vec2;
@@ -167,4 +167,4 @@ TEST(Profile, WhatIsNoOutlineIsRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::profile_test

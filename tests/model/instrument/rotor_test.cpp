@@ -12,7 +12,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::rotor_test {
 namespace {
 
 constexpr double kRadSPerRpm = std::numbers::pi / 30.0;
@@ -180,4 +180,4 @@ TEST(Drive, NamesWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::rotor_test

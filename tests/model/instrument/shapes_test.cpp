@@ -11,7 +11,7 @@
 #include "handpiece/base/geometry/inspect.h"
 #include "outlines.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::shapes_test {
 namespace {
 
 using handpiece::test::uniform;
@@ -138,4 +138,4 @@ TEST(Shapes, NamesThatMeanNothingAreRefusedWithAList) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::shapes_test

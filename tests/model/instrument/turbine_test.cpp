@@ -11,7 +11,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "support/random.h"
 
-namespace handpiece::instrument {
+namespace handpiece::instrument::turbine_test {
 namespace {
 
 TEST(Turbine, HasTheComplexityOfTheTable) {
@@ -124,4 +124,4 @@ TEST(Turbine, HoldsTheBur) {
 }
 
 }  // namespace
-}  // namespace handpiece::instrument
+}  // namespace handpiece::instrument::turbine_test

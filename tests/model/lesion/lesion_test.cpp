@@ -17,7 +17,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::lesion {
+namespace handpiece::lesion::lesion_test {
 namespace {
 
 using cases::Tissue;
@@ -299,4 +299,4 @@ TEST(Lesion, ToldWhatAToothLacks) {
 }
 
 }  // namespace
-}  // namespace handpiece::lesion
+}  // namespace handpiece::lesion::lesion_test

@@ -14,7 +14,7 @@
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/starter/paper.h"
 
-namespace handpiece::starter {
+namespace handpiece::starter::starter_test {
 namespace {
 
 using core::Vec3;
@@ -315,4 +315,4 @@ TEST(Paper, PlaneIsThatOfTableTwo) {
 }
 
 }  // namespace
-}  // namespace handpiece::starter
+}  // namespace handpiece::starter::starter_test

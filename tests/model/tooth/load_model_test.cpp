@@ -14,7 +14,7 @@
 #include "support/closed_meshes.h"
 #include "support/random.h"
 
-namespace handpiece::tooth {
+namespace handpiece::tooth::load_model_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -195,4 +195,4 @@ TEST_F(LoadModel, ProgressRisesToOneAndCancels) {
 }
 
 }  // namespace
-}  // namespace handpiece::tooth
+}  // namespace handpiece::tooth::load_model_test

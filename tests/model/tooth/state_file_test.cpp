@@ -15,7 +15,7 @@
 #include "handpiece/model/tooth/state_file.h"
 #include "support/cut_support.h"
 
-namespace handpiece::tooth {
+namespace handpiece::tooth::state_file_test {
 namespace {
 
 using core::Vec3;
@@ -178,4 +178,4 @@ TEST_F(CutStateFile, TeethAreToldApart) {
 }
 
 }  // namespace
-}  // namespace handpiece::tooth
+}  // namespace handpiece::tooth::state_file_test

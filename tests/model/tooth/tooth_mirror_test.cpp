@@ -8,7 +8,7 @@
 
 #include "support/cut_support.h"
 
-namespace handpiece::tooth {
+namespace handpiece::tooth::tooth_mirror_test {
 namespace {
 
 using core::Vec3;
@@ -86,4 +86,4 @@ TEST(StateDelta, ChangesLeadFromAnyStateToAnyOther) {
 }
 
 }  // namespace
-}  // namespace handpiece::tooth
+}  // namespace handpiece::tooth::tooth_mirror_test

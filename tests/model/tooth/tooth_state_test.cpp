@@ -12,7 +12,7 @@
 #include "support/cut_support.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::tooth {
+namespace handpiece::tooth::tooth_state_test {
 namespace {
 
 using core::Vec3;
@@ -330,4 +330,4 @@ TEST(WithTissues, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace handpiece::tooth
+}  // namespace handpiece::tooth::tooth_state_test

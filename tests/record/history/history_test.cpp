@@ -8,7 +8,7 @@
 
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::history_test {
 namespace {
 
 using Values = std::array<float, field::kBrickValues>;
@@ -229,4 +229,4 @@ TEST_F(HistoryTest, PutTogetherAgainItTakesTheSameSteps) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::history_test

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace handpiece::session {
+namespace handpiece::session::event_watch_test {
 namespace {
 
 using cases::Tissue;
@@ -81,4 +81,4 @@ TEST(EventWatch, limitsAndStallsAreToldAsTheyBeginAndNotTooOften) {
 }
 
 }  // namespace
-}  // namespace handpiece::session
+}  // namespace handpiece::session::event_watch_test

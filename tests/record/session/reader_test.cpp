@@ -11,7 +11,7 @@
 #include "record/session/made_up_hand.h"
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::reader_test {
 namespace {
 
 class Reader : public testing::Test {
@@ -102,4 +102,4 @@ TEST_F(Reader, BytesThatChangedAreToldOrHarmless) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::reader_test

@@ -10,7 +10,7 @@
 #include "record/session/made_up_hand.h"
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::record_test {
 namespace {
 
 bool sameBits(double a, double b) {
@@ -71,4 +71,4 @@ TEST(Record, WhatIsNoNumberComesBackAsNone) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::record_test

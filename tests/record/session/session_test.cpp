@@ -17,7 +17,7 @@
 #include "record/session/made_up_hand.h"
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::session_test {
 namespace {
 
 using session::EventName;
@@ -344,4 +344,4 @@ TEST_F(Session, NothingInTheFileNamesPersonMachineOrPlace) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::session_test

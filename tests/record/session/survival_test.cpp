@@ -12,7 +12,7 @@
 #include "record/session/made_up_hand.h"
 #include "support/random.h"
 
-namespace handpiece {
+namespace handpiece::survival_test {
 namespace {
 
 struct Change {
@@ -135,4 +135,4 @@ TEST_P(Survival, EveryMomentOfTheFileIsReadable) {
 INSTANTIATE_TEST_SUITE_P(Chunks, Survival, testing::Values(6, 400));
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::survival_test

@@ -16,7 +16,7 @@
 #include "handpiece/model/dentition/tooth_form.h"
 #include "support/random.h"
 
-namespace handpiece::landmarks {
+namespace handpiece::landmarks::find_landmarks_test {
 namespace {
 using cases::Landmark;
 using cases::LandmarkKind;
@@ -265,4 +265,4 @@ TEST(FindLandmarks, WhatAPersonSetStays) {
 }
 
 }  // namespace
-}  // namespace handpiece::landmarks
+}  // namespace handpiece::landmarks::find_landmarks_test

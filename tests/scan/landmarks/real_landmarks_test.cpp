@@ -14,7 +14,7 @@
 #include "handpiece/scan/landmarks/find_landmarks.h"
 #include "support/random.h"
 
-namespace handpiece::landmarks {
+namespace handpiece::landmarks::real_landmarks_test {
 namespace {
 using cases::Landmark;
 using cases::LandmarkKind;
@@ -227,4 +227,4 @@ TEST_F(RealLandmarks, OfAnUpperMolarInIndustrialCt) {
 }
 
 }  // namespace
-}  // namespace handpiece::landmarks
+}  // namespace handpiece::landmarks::real_landmarks_test

@@ -14,7 +14,7 @@
 #include "handpiece/model/field/part_tissues.h"
 #include "handpiece/model/starter/starter.h"
 
-namespace handpiece::phantom {
+namespace handpiece::phantom::phantom_test {
 namespace {
 
 using cases::Tissue;
@@ -437,4 +437,4 @@ TEST(Phantom, StopsWhenAskedAndSaysHowFarItIs) {
 }
 
 }  // namespace
-}  // namespace handpiece::phantom
+}  // namespace handpiece::phantom::phantom_test

@@ -20,7 +20,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::registration {
+namespace handpiece::registration::registration_test {
 namespace {
 
 using core::Pose;
@@ -324,4 +324,4 @@ TEST(OuterSurface, RefusesACrownThatLiesElsewhere) {
 }
 
 }  // namespace
-}  // namespace handpiece::registration
+}  // namespace handpiece::registration::registration_test

@@ -6,7 +6,7 @@
 #include "scan/segmentation/balls.h"
 #include "support/random.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::decisions_test {
 namespace {
 
 using cases::Tissue;
@@ -136,4 +136,4 @@ TEST(Decisions, ACutOffCrownIsAnErrorAndACutOffTipANote) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::decisions_test

@@ -10,7 +10,7 @@
 
 #include "support/error_of.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::label_key_test {
 namespace {
 
 using core::Vec3;
@@ -286,4 +286,4 @@ TEST(ToothAlone, FillsInBetweenSlicesFarApart) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::label_key_test

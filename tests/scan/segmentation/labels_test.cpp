@@ -4,7 +4,7 @@
 #include "handpiece/base/core/error.h"
 #include "scan/segmentation/balls.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::labels_test {
 namespace {
 
 using cases::Tissue;
@@ -86,4 +86,4 @@ TEST(SegmentLabels, NothingOfAToothIsAnError) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::labels_test

@@ -8,7 +8,7 @@
 #include "scan/segmentation/balls.h"
 #include "support/random.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::segment_test {
 namespace {
 
 using cases::Tissue;
@@ -177,4 +177,4 @@ TEST(Segment, TheSameBytesAtAnyThreadCountAndCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::segment_test

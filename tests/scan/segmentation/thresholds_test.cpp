@@ -7,7 +7,7 @@
 #include "scan/segmentation/balls.h"
 #include "support/random.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::thresholds_test {
 namespace {
 
 using test::Greys;
@@ -134,4 +134,4 @@ TEST(Teeth, TwoThatTouchArePartedAndEachCanBeChosen) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::thresholds_test

@@ -14,7 +14,7 @@
 #include "scan/segmentation/balls.h"
 #include "support/random.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::tooth_test {
 namespace {
 
 using cases::Tissue;
@@ -207,4 +207,4 @@ TEST(RealTooth, TheCariousMolarsLabelsKeepTheirVolumesAndItsPulpIsFilled) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::tooth_test

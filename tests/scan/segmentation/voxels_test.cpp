@@ -10,7 +10,7 @@
 #include "handpiece/scan/segmentation/work.h"
 #include "support/random.h"
 
-namespace handpiece::segmentation {
+namespace handpiece::segmentation::voxels_test {
 namespace {
 
 /// Parts by flooding, named by their first voxels.
@@ -96,4 +96,4 @@ TEST(Voxels, ValuesSpreadLayerByLayerAtAnyThreadCount) {
 }
 
 }  // namespace
-}  // namespace handpiece::segmentation
+}  // namespace handpiece::segmentation::voxels_test

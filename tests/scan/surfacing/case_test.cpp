@@ -8,7 +8,7 @@
 #include "handpiece/scan/surfacing/surfaces.h"
 #include "scan/surfacing/regions.h"
 
-namespace handpiece::surfacing {
+namespace handpiece::surfacing::case_test {
 namespace {
 
 using cases::Tissue;
@@ -111,4 +111,4 @@ TEST(SurfacesCase, CombOfDecayAtTheSurfaceStaysInTheTooth) {
 }
 
 }  // namespace
-}  // namespace handpiece::surfacing
+}  // namespace handpiece::surfacing::case_test

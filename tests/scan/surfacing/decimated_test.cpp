@@ -9,7 +9,7 @@
 #include "scan/surfacing/regions.h"
 #include "support/error_of.h"
 
-namespace handpiece::surfacing {
+namespace handpiece::surfacing::decimated_test {
 namespace {
 
 using cases::Tissue;
@@ -159,4 +159,4 @@ TEST(Decimated, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace handpiece::surfacing
+}  // namespace handpiece::surfacing::decimated_test

@@ -9,6 +9,7 @@
 
 #include "handpiece/scan/segmentation/segment.h"
 #include "handpiece/scan/surfacing/surfaces.h"
+#include "scan/segmentation/balls.h"
 
 namespace handpiece::test {
 
@@ -16,9 +17,6 @@ using Shape = std::function<double(const core::Vec3&)>;  ///< signed distance [m
 
 inline Shape ball(const core::Vec3& centre, double radiusMm) {
     return [=](const core::Vec3& p) { return (p - centre).norm() - radiusMm; };
-}
-inline double ballMm3(double radiusMm) {
-    return 4.0 / 3.0 * M_PI * radiusMm * radiusMm * radiusMm;
 }
 /// A ball cut by a half-space: what lies below z.
 inline Shape below(const Shape& shape, double z) {

@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::surfacing {
+namespace handpiece::surfacing::surfaces_test {
 namespace {
 
 using cases::Tissue;
@@ -342,4 +342,4 @@ TEST(MakeSurfaces, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace handpiece::surfacing
+}  // namespace handpiece::surfacing::surfaces_test

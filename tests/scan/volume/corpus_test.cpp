@@ -15,7 +15,7 @@
 #include "scan_support.h"
 #include "support/dice.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::corpus_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -432,4 +432,4 @@ TEST_F(Corpus, AsOtherProgramsWriteThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::corpus_test

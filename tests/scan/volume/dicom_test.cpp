@@ -4,7 +4,7 @@
 
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::dicom_test {
 namespace {
 
 using namespace std::string_literals;
@@ -452,4 +452,4 @@ TEST_F(Dicom, APackedIconIsPassedOver) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::dicom_test

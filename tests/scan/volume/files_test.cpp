@@ -11,7 +11,7 @@
 #include "handpiece/scan/volume/files.h"
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::files_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -614,4 +614,4 @@ TEST_F(ScanFiles, DicomdirOfTheFilesItLists) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::files_test

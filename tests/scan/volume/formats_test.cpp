@@ -7,7 +7,7 @@
 
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::formats_test {
 namespace {
 
 using test::errorOf;
@@ -565,4 +565,4 @@ TEST_F(Formats, GivenSpacingWins) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::formats_test

@@ -10,7 +10,7 @@
 
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::handedness_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -284,4 +284,4 @@ TEST_F(Handedness, OneSliceHasNoOtherEnd) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::handedness_test

@@ -15,7 +15,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::radiograph_file_test {
 namespace {
 
 using testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST_F(RadiographFiles, OtherNamesAndSizesAreRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::radiograph_file_test

@@ -5,7 +5,7 @@
 
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::real_data_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,4 +87,4 @@ TEST_F(RealScans, JawsHaveTheirSpacing) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::real_data_test

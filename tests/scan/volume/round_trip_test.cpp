@@ -7,7 +7,7 @@
 #include "handpiece/base/core/parallel.h"
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::round_trip_test {
 namespace {
 
 using test::difference;
@@ -162,4 +162,4 @@ TEST(ReadScan, ReportsProgressAndCanBeCancelled) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::round_trip_test

@@ -10,7 +10,7 @@
 
 #include "scan_support.h"
 
-namespace handpiece::volume {
+namespace handpiece::volume::strangers_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -523,4 +523,4 @@ TEST_F(Strangers, NamesThatAreNoUtf8AreReadAsOthers) {
 }
 
 }  // namespace
-}  // namespace handpiece::volume
+}  // namespace handpiece::volume::strangers_test

@@ -12,7 +12,7 @@
 #include "school/robust/robust_fixture.h"
 #include "school/server/browser.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::attack_test {
 namespace {
 
 using testing::HasSubstr;
@@ -277,4 +277,4 @@ TEST_P(AttackTest, ThirtyStationsWorkBesideTwoHundredHostileClients) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::attack_test

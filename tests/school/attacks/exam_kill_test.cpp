@@ -11,7 +11,7 @@
 #include "school/exam_station.h"
 #include "school/robust/robust_fixture.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::exam_kill_test {
 namespace {
 
 using school::ExamBooks;
@@ -228,4 +228,4 @@ TEST_P(ExamKillTest, NothingIsLostAndNobodyAccused) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::exam_kill_test

@@ -21,7 +21,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::exam {
+namespace handpiece::exam::exam_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -565,4 +565,4 @@ TEST(Receipts, AreCheckedByAnybodyWhoHasTheSchoolsKey) {
 }
 
 }  // namespace
-}  // namespace handpiece::exam
+}  // namespace handpiece::exam::exam_test

@@ -12,7 +12,7 @@
 #include "handpiece/school/store/books_accounts.h"
 #include "school/store/books_fixture.h"
 
-namespace handpiece::school {
+namespace handpiece::school::backup_test {
 namespace {
 
 using testing::AllOf;
@@ -262,4 +262,4 @@ TEST(Backup, ADamagedOneIsFoundAndNothingIsRestored) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::backup_test

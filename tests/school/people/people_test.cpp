@@ -17,7 +17,7 @@
 #include "handpiece/school/people/throttle.h"
 #include "support/error_of.h"
 
-namespace handpiece::school {
+namespace handpiece::school::people_test {
 namespace {
 
 using testing::HasSubstr;
@@ -248,4 +248,4 @@ TEST(Permissions, KnowTheirNames) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::people_test

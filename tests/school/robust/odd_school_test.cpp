@@ -12,7 +12,7 @@
 #include "school/server/browser.h"
 #include "support/error_of.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::odd_school_test {
 namespace {
 
 using testing::AllOf;
@@ -504,4 +504,4 @@ TEST(WrongClock, ADayOffEndsLogInsAndCodesAndNothingElse) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::odd_school_test

@@ -6,7 +6,7 @@
 
 #include "school/robust/robust_fixture.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::robust_test {
 namespace {
 
 using testing::HasSubstr;
@@ -184,4 +184,4 @@ TEST_P(RobustTest, AfterARestoreStationsSendAgainWhatCameSinceTheBackup) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::robust_test

@@ -13,7 +13,7 @@
 #include "handpiece/school/store/books_accounts.h"
 #include "school/store/books_fixture.h"
 
-namespace handpiece::school {
+namespace handpiece::school::roster_test {
 namespace {
 
 using testing::AllOf;
@@ -500,4 +500,4 @@ TEST(OneRoster, ComesAsAZipAFolderAndInAFolderOfAZip) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::roster_test

@@ -19,7 +19,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::elsewhere_test {
 namespace {
 
 using nlohmann::json;
@@ -532,4 +532,4 @@ TEST_F(ElsewhereTest, StatementsGoToARecordStoreOnceEach) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::elsewhere_test

@@ -25,7 +25,7 @@
 #include "school/worker.h"
 #include "support/error_of.h"
 
-namespace handpiece::school_exam {
+namespace handpiece::school_exam::exam_server_test {
 namespace {
 
 using school_server::School;
@@ -780,4 +780,4 @@ TEST_F(ExamTest, ATeacherDecidesAndAnExaminerMarksAgainBlind) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_exam
+}  // namespace handpiece::school_exam::exam_server_test

@@ -4,7 +4,7 @@
 #include "handpiece/school/store/books_accounts.h"
 #include "school/server/pages_fixture.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::office_test {
 namespace {
 
 using school::BooksAccounts;
@@ -228,4 +228,4 @@ TEST_F(OfficeTest, TheAuditTellsWhoDidWhatPageByPage) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::office_test

@@ -4,7 +4,7 @@
 #include "school/routes.h"
 #include "school/server/pages_fixture.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::pages_test {
 namespace {
 
 using testing::AllOf;
@@ -189,4 +189,4 @@ TEST_F(PagesTest, ALogInEnds) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::pages_test

@@ -15,7 +15,7 @@
 #include "school/server/pages_fixture.h"
 #include "school/slow_guard.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::security_test {
 namespace {
 
 using testing::HasSubstr;
@@ -603,4 +603,4 @@ TEST_F(SecurityTest, AGivenLogInIsNotTakenOver) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::security_test

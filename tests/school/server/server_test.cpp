@@ -8,7 +8,7 @@
 #include "school/worker.h"
 #include "support/error_of.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::server_test {
 namespace {
 
 using testing::HasSubstr;
@@ -369,4 +369,4 @@ TEST(Station, ANonsenseServerIsToldAndChangesNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::server_test

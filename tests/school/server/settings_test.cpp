@@ -9,7 +9,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
 
-namespace handpiece::school_cli {
+namespace handpiece::school_cli::settings_test {
 namespace {
 
 using testing::AllOf;
@@ -91,4 +91,4 @@ TEST_F(SchoolSettingsTest, WhatIsWrongIsToldWithItsPlace) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_cli
+}  // namespace handpiece::school_cli::settings_test

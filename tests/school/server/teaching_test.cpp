@@ -5,7 +5,7 @@
 #include "school/server/teaching_fixture.h"
 #include "school/sheet.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::teaching_test {
 namespace {
 
 using testing::AllOf;
@@ -508,4 +508,4 @@ TEST(SettleTest, IsTheMeanOfTheNewestUnlessTheyDifferTooMuchOrOnWhoPasses) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::teaching_test

@@ -15,7 +15,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::school_cli {
+namespace handpiece::school_cli::typed_secret_test {
 namespace {
 
 class TypedSecretTest : public testing::Test {
@@ -96,4 +96,4 @@ TEST(TypedSecret, ComesFromAProgramLineByLine) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_cli
+}  // namespace handpiece::school_cli::typed_secret_test

@@ -12,7 +12,7 @@
 #include "school/server/teaching_fixture.h"
 #include "school/sheet.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::visibility_test {
 namespace {
 
 using school::Role;
@@ -440,4 +440,4 @@ TEST_F(VisibilityTest, NoRouteShowsMoreOfAnAttemptThanTheRuleSays) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::visibility_test

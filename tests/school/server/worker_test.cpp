@@ -14,7 +14,7 @@
 #include "school/server/school_fixture.h"
 #include "support/error_of.h"
 
-namespace handpiece::school_server {
+namespace handpiece::school_server::worker_test {
 namespace {
 
 using school_station::Line;
@@ -322,4 +322,4 @@ TEST_F(WorkersTest, AMachineWithoutRoomGivesTheWorkBack) {
 }
 
 }  // namespace
-}  // namespace handpiece::school_server
+}  // namespace handpiece::school_server::worker_test

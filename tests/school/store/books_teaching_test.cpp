@@ -7,7 +7,7 @@
 #include "school/store/books_fixture.h"
 #include "support/error_of.h"
 
-namespace handpiece::school {
+namespace handpiece::school::books_teaching_test {
 namespace {
 
 using testing::ElementsAre;
@@ -192,4 +192,4 @@ TEST_P(TeachingBooksTest, StandardsAndExemplarsAreKeptAndGoWithTheirAttempts) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::books_teaching_test

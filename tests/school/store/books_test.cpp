@@ -14,7 +14,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::school {
+namespace handpiece::school::books_test {
 namespace {
 
 using testing::ElementsAre;
@@ -889,4 +889,4 @@ TEST(BooksOfBothDatabases, AreTheSameByteForByte) {
                                     << postgres.substr(at > 100 ? at - 100 : 0, 300);
 }
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::books_test

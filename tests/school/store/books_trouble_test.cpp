@@ -17,7 +17,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::school {
+namespace handpiece::school::books_trouble_test {
 namespace {
 
 using testing::ElementsAre;
@@ -571,4 +571,4 @@ TEST_P(BooksInTroubleTest, TheLogStaysShortThoughSomebodyAlwaysReads) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::books_trouble_test

@@ -10,7 +10,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::school {
+namespace handpiece::school::exam_books_test {
 namespace {
 
 using test::errorIdOf;
@@ -278,4 +278,4 @@ TEST(BooksOfBothDatabases, HaveTheSameExams) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::exam_books_test

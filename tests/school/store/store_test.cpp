@@ -20,7 +20,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::school {
+namespace handpiece::school::store_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -521,4 +521,4 @@ TEST_F(StoreTest, DamageEndsInOneErrorAndNeverInACrash) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::store_test

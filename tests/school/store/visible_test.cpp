@@ -14,7 +14,7 @@
 #include "handpiece/school/store/teaching.h"
 #include "school/store/books_fixture.h"
 
-namespace handpiece::school {
+namespace handpiece::school::visible_test {
 namespace {
 
 using testing::HasSubstr;
@@ -197,4 +197,4 @@ TEST_P(BooksTest, WhatAPersonIsGivenIsWhatTheyMaySee) {
 }
 
 }  // namespace
-}  // namespace handpiece::school
+}  // namespace handpiece::school::visible_test

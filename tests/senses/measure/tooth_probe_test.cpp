@@ -11,7 +11,7 @@
 #include "support/cut_support.h"
 #include "support/random.h"
 
-namespace handpiece::measure {
+namespace handpiece::measure::tooth_probe_test {
 namespace {
 
 using cases::Tissue;
@@ -361,4 +361,4 @@ TEST_F(Bored, whatMakesNoSenseIsRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::measure
+}  // namespace handpiece::measure::tooth_probe_test

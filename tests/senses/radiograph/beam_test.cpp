@@ -8,7 +8,7 @@
 
 #include "support/error_of.h"
 
-namespace handpiece::radiograph {
+namespace handpiece::radiograph::beam_test {
 namespace {
 
 using cases::Tissue;
@@ -108,4 +108,4 @@ TEST(Beam, OtherVoltagesAndFillingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace handpiece::radiograph
+}  // namespace handpiece::radiograph::beam_test

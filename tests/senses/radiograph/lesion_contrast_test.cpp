@@ -15,7 +15,7 @@
 #include "handpiece/model/starter/starter.h"
 #include "handpiece/senses/radiograph/radiograph.h"
 
-namespace handpiece::radiograph {
+namespace handpiece::radiograph::lesion_contrast_test {
 namespace {
 
 using cases::Tissue;
@@ -226,4 +226,4 @@ TEST(LesionContrast, APixelsNoiseIsWhatTheTableTakesItFor) {
 }
 
 }  // namespace
-}  // namespace handpiece::radiograph
+}  // namespace handpiece::radiograph::lesion_contrast_test

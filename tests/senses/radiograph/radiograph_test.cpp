@@ -14,7 +14,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::radiograph {
+namespace handpiece::radiograph::radiograph_test {
 namespace {
 
 using cases::Tissue;
@@ -560,4 +560,4 @@ TEST(Radiograph, WhatCannotBeTakenIsToldInOneSentence) {
 }
 
 }  // namespace
-}  // namespace handpiece::radiograph
+}  // namespace handpiece::radiograph::radiograph_test

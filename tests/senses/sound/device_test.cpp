@@ -13,7 +13,7 @@
 #include "handpiece/senses/sound/player.h"
 #include "support/random.h"
 
-namespace handpiece::sound {
+namespace handpiece::sound::device_test {
 namespace {
 
 using namespace std::chrono_literals;
@@ -102,4 +102,4 @@ TEST(Device, PlaysAndKeepsTheBooks) {
 }
 
 }  // namespace
-}  // namespace handpiece::sound
+}  // namespace handpiece::sound::device_test

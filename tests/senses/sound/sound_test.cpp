@@ -12,7 +12,7 @@
 #include "senses/sound/listen.h"
 #include "support/error_of.h"
 
-namespace handpiece::sound {
+namespace handpiece::sound::sound_test {
 namespace {
 
 using test::click;
@@ -403,4 +403,4 @@ TEST(State, OfTwoSamples) {
 }
 
 }  // namespace
-}  // namespace handpiece::sound
+}  // namespace handpiece::sound::sound_test

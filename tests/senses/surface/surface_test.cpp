@@ -10,7 +10,7 @@
 #include "senses/surface/solids.h"
 #include "support/random.h"
 
-namespace handpiece::surface {
+namespace handpiece::surface::surface_test {
 namespace {
 
 using core::Quat;
@@ -154,4 +154,4 @@ TEST(Surface, CornersOnAMarginAreLitByTheSurfacesThatMeetThere) {
 }
 
 }  // namespace
-}  // namespace handpiece::surface
+}  // namespace handpiece::surface::surface_test

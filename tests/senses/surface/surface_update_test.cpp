@@ -18,7 +18,7 @@
 #include "senses/surface/solids.h"
 #include "support/cut_support.h"
 
-namespace handpiece::surface {
+namespace handpiece::surface::surface_update_test {
 namespace {
 
 using cases::Tissue;
@@ -378,4 +378,4 @@ TEST(ClosedSurface, WholeAndPartsHoldWhatTheFieldHolds) {
 }
 
 }  // namespace
-}  // namespace handpiece::surface
+}  // namespace handpiece::surface::surface_update_test

@@ -14,7 +14,7 @@
 #include "model/dentition/mouths.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::as_patient_test {
 namespace {
 
 using core::Vec3;
@@ -202,4 +202,4 @@ TEST(AsPatient, NoViewIsBurntOutOrBlack) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::as_patient_test

@@ -5,7 +5,7 @@
 #include "handpiece/senses/view/renderer.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::view {
+namespace handpiece::view::bleeding_test {
 namespace {
 
 using cases::Tissue;
@@ -125,4 +125,4 @@ TEST_F(BleedingGingiva, LooksTheSameWhateverWasDrawnBefore) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::bleeding_test

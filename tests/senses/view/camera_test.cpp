@@ -8,7 +8,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::camera_test {
 namespace {
 
 using core::Vec2;
@@ -232,4 +232,4 @@ TEST(Camera, InAMirrorLeftAndRightChangePlacesAndTheHandTurnsWhatItSees) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::camera_test

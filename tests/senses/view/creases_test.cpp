@@ -16,7 +16,7 @@
 #include "handpiece/tick/cutting/sweeper.h"
 #include "support/cut_support.h"
 
-namespace handpiece::view {
+namespace handpiece::view::creases_test {
 namespace {
 
 using core::Vec3;
@@ -197,4 +197,4 @@ TEST_F(Molar, TheMarginOfAClassOneHasNoTeeth) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::creases_test

@@ -12,7 +12,7 @@
 #include "handpiece/senses/view/renderer.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::effects_test {
 namespace {
 
 using core::Vec2;
@@ -281,4 +281,4 @@ TEST(Stereo, SideBySideHasTheLeftEyeOnTheLeft) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::effects_test

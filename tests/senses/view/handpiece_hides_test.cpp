@@ -14,7 +14,7 @@
 #include "handpiece/senses/view/renderer.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::view {
+namespace handpiece::view::handpiece_hides_test {
 namespace {
 
 using core::Vec3;
@@ -224,4 +224,4 @@ TEST_F(HandpieceHides, BesideTheWorkItIsThere) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::handpiece_hides_test

@@ -7,7 +7,7 @@
 
 #include "handpiece/senses/view/renderer.h"
 
-namespace handpiece::view {
+namespace handpiece::view::hollows_test {
 namespace {
 
 using cases::Tissue;
@@ -105,4 +105,4 @@ TEST(Hollows, ABlockOfEnamelAloneIsOfOneColourFromItsTopToItsFoot) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::hollows_test

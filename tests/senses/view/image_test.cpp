@@ -13,7 +13,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::image_test {
 namespace {
 
 Image noise(int width, int height, std::mt19937_64& generator) {
@@ -167,4 +167,4 @@ TEST(Image, EnlargedItLiesBetweenItsPixels) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::image_test

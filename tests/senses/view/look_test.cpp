@@ -8,7 +8,7 @@
 
 #include "support/error_of.h"
 
-namespace handpiece::view {
+namespace handpiece::view::look_test {
 namespace {
 
 using cases::Tissue;
@@ -212,4 +212,4 @@ TEST(Look, NamesAreKnownOrTold) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::look_test

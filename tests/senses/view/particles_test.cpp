@@ -10,7 +10,7 @@
 #include "handpiece/senses/view/renderer.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::particles_test {
 namespace {
 
 using core::Vec3;
@@ -216,4 +216,4 @@ TEST(Particles, InputsThatAreNoNumbersGiveNothing) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::particles_test

@@ -18,7 +18,7 @@
 #include "support/error_of.h"
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::renderer_test {
 namespace {
 
 using cases::Tissue;
@@ -984,4 +984,4 @@ TEST(RendererDeathTest, WithoutOpenGlThereIsOneClearError) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::renderer_test

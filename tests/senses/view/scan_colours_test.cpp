@@ -10,7 +10,7 @@
 #include "handpiece/senses/view/renderer.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::view {
+namespace handpiece::view::scan_colours_test {
 namespace {
 
 using cases::Tissue;
@@ -235,4 +235,4 @@ TEST(ScanColours, AllOfAnUncutToothHasThem) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::scan_colours_test

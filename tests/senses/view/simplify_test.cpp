@@ -16,7 +16,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::simplify_test {
 namespace {
 
 using gl::Vec3f;
@@ -193,4 +193,4 @@ TEST(Simplify, TakesNothingFromAnEdgeOfTheSolid) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::simplify_test

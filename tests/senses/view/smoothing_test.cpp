@@ -11,7 +11,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::view {
+namespace handpiece::view::smoothing_test {
 namespace {
 
 using Shade = std::array<double, 3>;
@@ -150,4 +150,4 @@ TEST(Smoothing, InPiecesOrWithOtherChannelsItIsTheSame) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::smoothing_test

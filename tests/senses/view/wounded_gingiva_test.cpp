@@ -10,7 +10,7 @@
 #include "handpiece/senses/view/mesh_pieces.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::view {
+namespace handpiece::view::wounded_gingiva_test {
 namespace {
 
 using core::Vec3;
@@ -128,4 +128,4 @@ TEST_F(Plate, WhatHasNotChangedIsNotGivenAgain) {
 }
 
 }  // namespace
-}  // namespace handpiece::view
+}  // namespace handpiece::view::wounded_gingiva_test

@@ -6,7 +6,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "support/random.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::bur_frame_test {
 namespace {
 
 using core::Vec3;
@@ -43,4 +43,4 @@ TEST(BurFrame, itsBoxHoldsTheBurClosely) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::bur_frame_test

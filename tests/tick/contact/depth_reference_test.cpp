@@ -12,7 +12,7 @@
 #include "support/brute_force_depth.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::depth_reference_test {
 namespace {
 
 using core::Vec3;
@@ -146,4 +146,4 @@ TEST(DepthReference, isNeverMoreThanTheMinimalTranslationOfAConvexPair) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::depth_reference_test

@@ -13,7 +13,7 @@
 #include "tick/contact/contact_fixture.h"
 #include "tick/contact/cut_by_hand.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::field_method_test {
 namespace {
 
 using core::Vec3;
@@ -505,4 +505,4 @@ TEST(FieldMethod, AFlatEndCentredOverAnEdgeIsPushedOut) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::field_method_test

@@ -14,7 +14,7 @@
 #include "support/realtime_trap.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::mouth_method_test {
 namespace {
 
 using core::Pose;
@@ -338,4 +338,4 @@ TEST(MouthMethod, RefusesWhatIsNoMouth) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::mouth_method_test

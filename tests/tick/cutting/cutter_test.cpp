@@ -11,7 +11,7 @@
 #include "support/realtime_trap.h"
 #include "tick/cutting/phantom.h"
 
-namespace handpiece::cutting {
+namespace handpiece::cutting::cutter_test {
 namespace {
 
 using cases::Tissue;
@@ -273,4 +273,4 @@ TEST(Cutter, refusesAnAbilityThatIsNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::cutting
+}  // namespace handpiece::cutting::cutter_test

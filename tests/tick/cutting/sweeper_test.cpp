@@ -14,7 +14,7 @@
 #include "support/realtime_trap.h"
 #include "tick/cutting/phantom.h"
 
-namespace handpiece::cutting {
+namespace handpiece::cutting::sweeper_test {
 namespace {
 
 using cases::Tissue;
@@ -512,4 +512,4 @@ TEST(Sweeper, takesNoMemoryInTheTick) {
 }
 
 }  // namespace
-}  // namespace handpiece::cutting
+}  // namespace handpiece::cutting::sweeper_test

@@ -7,7 +7,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::device {
+namespace handpiece::device::capability_test {
 namespace {
 
 TEST(Capability, recordsAreFoundByNameAndSane) {
@@ -39,4 +39,4 @@ TEST(Capability, refusesLimitsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::device
+}  // namespace handpiece::device::capability_test

@@ -7,7 +7,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::device {
+namespace handpiece::device::motion_test {
 namespace {
 
 using core::Pose;
@@ -75,4 +75,4 @@ TEST(Motion, refusesWhatCannotBeFollowed) {
 }
 
 }  // namespace
-}  // namespace handpiece::device
+}  // namespace handpiece::device::motion_test

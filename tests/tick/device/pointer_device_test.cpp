@@ -16,7 +16,7 @@
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::device {
+namespace handpiece::device::pointer_device_test {
 namespace {
 
 using cases::Tissue;
@@ -634,4 +634,4 @@ TEST_F(PointerAtATooth, theTickNeitherAllocatesNorLocksNorWaits) {
 }
 
 }  // namespace
-}  // namespace handpiece::device
+}  // namespace handpiece::device::pointer_device_test

@@ -5,7 +5,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece {
+namespace handpiece::replay_device_test {
 namespace {
 
 TEST(ReplayDevice, GivesTheReadingsInOrderAndIsLostPastTheEnd) {
@@ -39,4 +39,4 @@ TEST(ReplayDevice, NeedsReadingsAndADevice) {
 }
 
 }  // namespace
-}  // namespace handpiece
+}  // namespace handpiece::replay_device_test

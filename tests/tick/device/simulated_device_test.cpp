@@ -8,7 +8,7 @@
 
 #include "handpiece/base/core/error.h"
 
-namespace handpiece::device {
+namespace handpiece::device::simulated_device_test {
 namespace {
 
 using core::Pose;
@@ -174,4 +174,4 @@ TEST(SimulatedDevice, refusesFiguresThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace handpiece::device
+}  // namespace handpiece::device::simulated_device_test

@@ -9,7 +9,7 @@
 
 #include "support/random.h"
 
-namespace handpiece::force {
+namespace handpiece::force::constraint_projection_test {
 namespace {
 
 using contact::ConstraintSet;
@@ -123,4 +123,4 @@ TEST(ConstraintProjection, takesManyAlmostEqualPlanes) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::constraint_projection_test

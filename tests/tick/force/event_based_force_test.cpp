@@ -13,7 +13,7 @@
 #include "handpiece/tick/force/wave.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::force {
+namespace handpiece::force::event_based_force_test {
 namespace {
 
 using cases::Tissue;
@@ -298,4 +298,4 @@ TEST(EventBasedForce, isTheForceItselfWhenOffAndSilentInDoubt) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::event_based_force_test

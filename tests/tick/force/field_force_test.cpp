@@ -9,7 +9,7 @@
 #include "handpiece/tick/force/force_model.h"
 #include "tick/force/prism_tooth.h"
 
-namespace handpiece::force {
+namespace handpiece::force::field_force_test {
 namespace {
 
 using core::Pose;
@@ -169,4 +169,4 @@ TEST(FieldForce, aThinWallHoldsTheLargestForce) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::field_force_test

@@ -10,7 +10,7 @@
 #include "support/realtime_trap.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::force {
+namespace handpiece::force::force_law_test {
 namespace {
 
 using core::Vec3;
@@ -122,4 +122,4 @@ TEST(ForceLaw, changesBetweenTwoTicksAndBeginsAnew) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::force_law_test

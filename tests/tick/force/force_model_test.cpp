@@ -6,7 +6,7 @@
 #include "handpiece/base/core/error.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::force {
+namespace handpiece::force::force_model_test {
 namespace {
 
 using core::Pose;
@@ -357,4 +357,4 @@ TEST(Parameters, refusesWhatIsNotANumberOrOutOfRange) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::force_model_test

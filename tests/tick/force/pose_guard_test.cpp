@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace handpiece::force {
+namespace handpiece::force::pose_guard_test {
 namespace {
 
 constexpr double kPeriodS = 1e-3, kFadeInS = 0.2;
@@ -97,4 +97,4 @@ TEST(PoseGuard, neverHandsOnAPoseBeforeAGoodOne) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::pose_guard_test

@@ -6,7 +6,7 @@
 #include "support/random.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::force {
+namespace handpiece::force::proxy_test {
 namespace {
 
 using core::Pose;
@@ -167,4 +167,4 @@ TEST(Proxy, neverSinksOnRandomWalks) {
 }
 
 }  // namespace
-}  // namespace handpiece::force
+}  // namespace handpiece::force::proxy_test

@@ -9,7 +9,7 @@
 #include "support/closed_meshes.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::contact_point_test {
 namespace {
 
 using core::Pose;
@@ -105,4 +105,4 @@ TEST(ContactPoint, withoutPatchesItIsTheDeepestPoint) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::contact_point_test

@@ -15,7 +15,7 @@
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::cutting_loop_test {
 namespace {
 
 using cases::Tissue;
@@ -385,4 +385,4 @@ TEST(CuttingLoop, sameInputsSameTooth) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::cutting_loop_test

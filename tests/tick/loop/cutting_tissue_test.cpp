@@ -12,7 +12,7 @@
 #include "handpiece/tick/loop/loop_run.h"
 #include "support/closed_meshes.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::cutting_tissue_test {
 namespace {
 
 using cases::Tissue;
@@ -238,4 +238,4 @@ TEST(CariousGradient, theBurSlowsDownLayerByLayerAndNothingClicks) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::cutting_tissue_test

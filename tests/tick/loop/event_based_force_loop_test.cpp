@@ -12,7 +12,7 @@
 #include "support/closed_meshes.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::event_based_force_loop_test {
 namespace {
 
 using core::Pose;
@@ -140,4 +140,4 @@ TEST(EventBasedForceLoop, theKnockLeavesTheLoopPassiveAndAtRest) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::event_based_force_loop_test

@@ -16,7 +16,7 @@
 #include "support/realtime_trap.h"
 #include "tick/force/analytic_methods.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::haptic_loop_test {
 namespace {
 
 using core::Pose;
@@ -277,4 +277,4 @@ TEST(HapticLoop, refusesRatesThatCannotBeRun) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::haptic_loop_test

@@ -8,7 +8,7 @@
 
 #include "studies/passivity.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::ripple_test {
 namespace {
 
 TEST(Ripple, withoutFrictionStaysWithinEncoderStepsAndDoesNotGrow) {
@@ -35,4 +35,4 @@ TEST(Ripple, withoutFrictionStaysWithinEncoderStepsAndDoesNotGrow) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::ripple_test

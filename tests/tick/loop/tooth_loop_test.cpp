@@ -14,7 +14,7 @@
 #include "studies/built_in_motion.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::loop {
+namespace handpiece::loop::tooth_loop_test {
 namespace {
 
 using core::Vec3;
@@ -106,4 +106,4 @@ TEST_F(ToothLoop, repeatsItselfBitForBit) {
 }
 
 }  // namespace
-}  // namespace handpiece::loop
+}  // namespace handpiece::loop::tooth_loop_test

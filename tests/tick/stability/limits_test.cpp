@@ -8,7 +8,7 @@
 #include "handpiece/base/core/error.h"
 #include "studies/passivity.h"
 
-namespace handpiece::stability {
+namespace handpiece::stability::limits_test {
 namespace {
 
 TEST(Limits, fallWithDelayAndRiseWithFriction) {
@@ -62,4 +62,4 @@ TEST(Limits, refuseFiguresThatAreNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::stability
+}  // namespace handpiece::stability::limits_test

@@ -14,7 +14,7 @@
 #include "studies/shaped_device.h"
 #include "support/random.h"
 
-namespace handpiece::stability {
+namespace handpiece::stability::passivity_controller_test {
 namespace {
 
 using core::Vec3;
@@ -266,4 +266,4 @@ TEST(PassivityController, sameInputsSameBits) {
 }
 
 }  // namespace
-}  // namespace handpiece::stability
+}  // namespace handpiece::stability::passivity_controller_test

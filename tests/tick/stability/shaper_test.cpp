@@ -12,7 +12,7 @@
 #include "support/random.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::stability {
+namespace handpiece::stability::shaper_test {
 namespace {
 
 using core::Vec3;
@@ -195,4 +195,4 @@ TEST(Shaper, refusesSettingsThatAreNone) {
 }
 
 }  // namespace
-}  // namespace handpiece::stability
+}  // namespace handpiece::stability::shaper_test

@@ -9,7 +9,7 @@
 #include "handpiece/base/core/simd.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::exact_kernels_test {
 namespace {
 
 using core::Vec3;
@@ -116,4 +116,4 @@ TEST(ExactKernels, everyInstructionSetGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::exact_kernels_test

@@ -13,7 +13,7 @@
 #include "support/brute_force_depth.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::hard_teeth_test {
 namespace {
 
 using core::Vec3;
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(Teeth, RimInTooth, testing::Values("solid", "nested", "
 INSTANTIATE_TEST_SUITE_P(Teeth, HardTooth, testing::Values("shell", "nested", "cavities", "sheet"));
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::hard_teeth_test

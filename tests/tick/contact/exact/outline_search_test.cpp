@@ -9,7 +9,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::outline_search_test {
 namespace {
 
 TEST(OutlineSearch, everyInstructionSetGivesTheSameBits) {
@@ -46,4 +46,4 @@ TEST(OutlineSearch, fitBursWithSharpRimsThatAreConvex) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::outline_search_test

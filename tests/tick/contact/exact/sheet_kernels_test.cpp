@@ -9,7 +9,7 @@
 
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::sheet_kernels_test {
 namespace {
 
 using core::Vec3;
@@ -143,4 +143,4 @@ TEST(SheetKernels, everyInstructionSetGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::sheet_kernels_test

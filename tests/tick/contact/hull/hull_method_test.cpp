@@ -8,7 +8,7 @@
 #include "handpiece/base/geometry/convex_hull.h"
 #include "support/realtime_trap.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::hull_method_test {
 namespace {
 
 using core::Pose;
@@ -143,4 +143,4 @@ TEST(HullMethod, reportsOnePatchAndOneConstraint) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::hull_method_test

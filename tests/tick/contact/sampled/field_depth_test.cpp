@@ -14,7 +14,7 @@
 #include "handpiece/model/instrument/shapes.h"
 #include "support/random.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::field_depth_test {
 namespace {
 
 using core::Vec3;
@@ -118,4 +118,4 @@ TEST(RingKernels, aPassWithAWindowTellsAllThatLiesInIt) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::field_depth_test

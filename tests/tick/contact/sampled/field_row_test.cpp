@@ -10,7 +10,7 @@
 #include "handpiece/base/core/simd.h"
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::field_row_test {
 namespace {
 
 using core::Vec3;
@@ -63,4 +63,4 @@ TEST(FieldRow, lookupsAreThoseOfTheFieldAtEveryLevel) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::field_row_test

@@ -14,7 +14,7 @@
 
 #include "tick/contact/contact_fixture.h"
 
-namespace handpiece::contact {
+namespace handpiece::contact::surface_sampler_test {
 namespace {
 
 using core::Vec3;
@@ -401,4 +401,4 @@ TEST(SurfaceSampler, everyInstructionSetGivesTheSameBits) {
 }
 
 }  // namespace
-}  // namespace handpiece::contact
+}  // namespace handpiece::contact::surface_sampler_test

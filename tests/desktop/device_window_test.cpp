@@ -18,6 +18,7 @@
 
 #include "desktop/features/device/fidelity_box.h"
 #include "desktop/features/device/first_plug_in.h"
+#include "desktop/features/drill/welcome_strip.h"
 #include "desktop/features/device/profile_box.h"
 #include "desktop/widgets/notice_bar.h"
 #include "devices/drivers/gamepad_virtual.h"
@@ -133,6 +134,9 @@ TEST_F(DeviceWindowTest, CutsUntilItIsUnpluggedThenTheMouseGoesOnAndNothingIsLos
     ASSERT_TRUE(chooseLed());
     EXPECT_FALSE(simulator().mailbox());
     EXPECT_EQ(simulator().capability().maxForceN, 3.0);
+    const auto* welcome = window().findChild<WelcomeStrip*>();
+    EXPECT_TRUE(waitFor([&] { return welcome->text().contains("Move the handpiece"); }))
+        << welcome->text().toStdString();
     EXPECT_TRUE(entry("openhaptics")->isChecked());
     EXPECT_FALSE(entry("mouse")->isChecked());
     EXPECT_EQ(host_->settings().value("work/device").toString(), "openhaptics");

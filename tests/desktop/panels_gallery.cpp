@@ -23,7 +23,6 @@
 #include "desktop/features/view/view_bar.h"
 #include "desktop/widgets/force_gauge.h"
 #include "desktop/widgets/icon_factory.h"
-#include "desktop/widgets/legend.h"
 #include "desktop/widgets/notice_bar.h"
 #include "desktop/widgets/status_line.h"
 #include "desktop/widgets/theme.h"
@@ -159,14 +158,6 @@ void panels() {
         mm3[3] = 0.04;
         bars->setVolumes(mm3);
         column->addWidget(bars);
-        auto* legend = new Legend(&row);
-        legend->setEntries(
-            {{Tissue::enamel, {244, 241, 230}}, {Tissue::dentine, {226, 199, 140}}, {Tissue::pulp, {190, 62, 62}}});
-        column->addWidget(legend);
-        auto* scale = new Legend(&row);
-        scale->setObjectName("scale");
-        scale->setDepthScale(3.0, {{255, 255, 220}, {120, 190, 120}, {30, 60, 140}});
-        column->addWidget(scale);
         keep(row, "gauges", {280, 480});
     }
     {

@@ -97,10 +97,4 @@ void Settings::addRecent(const QString& file) {
     set(QStringLiteral("files/recent"), QStringList(files.mid(0, 10)));
 }
 
-void Settings::removeRecent(const QString& file) {
-    QStringList files = recentFiles();
-    files.removeAll(file);
-    set(QStringLiteral("files/recent"), files);
-}
-
 }  // namespace handpiece::desktop

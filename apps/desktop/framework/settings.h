@@ -41,7 +41,6 @@ class Settings {
     [[nodiscard]] QStringList recentFiles() const;
     /// First in the list, once, ten at most.
     void addRecent(const QString& file);
-    void removeRecent(const QString& file);
 
   private:
     std::unique_ptr<QSettings> settings_;

@@ -326,7 +326,7 @@ OverlayState ViewWidget::State::overlay() const {
     state.compare = frame ? frame->compare : compare;
     state.tool = tool;
     state.covered = strips->covered();
-    if (legendShown && allows(Operation::tissueColours)) {
+    if (allows(Operation::tissueColours)) {
         std::vector<cases::Tissue> shown;
         for (const cases::Tissue tissue : tissues)
             if (look.visible[static_cast<std::size_t>(tissue)]) shown.push_back(tissue);

@@ -38,7 +38,7 @@ struct ViewWidget::State {
     view::Camera camera;
     KeyBindings bindings;
     exercise::Permissions permissions;
-    bool legendShown = true, sectionBarShown = true;
+    bool sectionBarShown = true;
     QString problem, remedy;  // why nothing is drawn
     QString waiting;          // for what, while there is no tooth
     bool isSketch = false;

@@ -264,10 +264,6 @@ OverlayState ViewWidget::written() const {
     return state_->overlay();
 }
 
-void ViewWidget::setLegendShown(bool shown) {
-    state_->legendShown = shown;
-    update();
-}
 void ViewWidget::setSectionBarShown(bool shown) {
     state_->sectionBarShown = shown;
     state_->layOut();

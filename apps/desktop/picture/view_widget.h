@@ -122,7 +122,6 @@ class ViewWidget : public QWidget {
     /// What is not allowed goes away and stays away, whoever asks for it.
     void setPermissions(const exercise::Permissions& permissions);
     [[nodiscard]] const exercise::Permissions& permissions() const;
-    void setLegendShown(bool shown);
     /// The bar by which a section is placed; without it somebody else has such controls.
     void setSectionBarShown(bool shown);
     /// Shown over the picture, which keeps its size: messages, progress.

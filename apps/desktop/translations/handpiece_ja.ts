@@ -4635,25 +4635,6 @@
     </message>
 </context>
 <context>
-    <name>handpiece::desktop::Legend</name>
-    <message>
-        <source>Legend</source>
-        <translation>凡例</translation>
-    </message>
-    <message>
-        <source>What the colours mean</source>
-        <translation>色の意味</translation>
-    </message>
-    <message>
-        <source>Removed depth</source>
-        <translation>切削深さ</translation>
-    </message>
-    <message>
-        <source>mm</source>
-        <translation>mm</translation>
-    </message>
-</context>
-<context>
     <name>handpiece::desktop::LiveBox</name>
     <message>
         <source>How the device is doing</source>

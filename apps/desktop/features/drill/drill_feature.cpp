@@ -354,6 +354,7 @@ void DrillFeature::showTick() {
     if (simulator_.mode() != Simulator::Mode::liveSession) return;
     // The bur comes to lie near the tooth by itself: with the mouse, only who moved it has moved over the tooth.
     const bool byMouse = simulator_.mailbox() != nullptr;
+    welcome_->setPointerIsMouse(byMouse);
     if (sample.tick > 0 && sample.depthMm > -1.0 && (!byMouse || hasMoved_)) tellStep(WelcomeStrip::Step::hover);
     if ((sample.flags & messages::kCutting) != 0) tellStep(WelcomeStrip::Step::cut);
 }

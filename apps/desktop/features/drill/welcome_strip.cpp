@@ -58,6 +58,7 @@ void WelcomeStrip::markDone(Step step) {
 }
 
 void WelcomeStrip::setPointerIsMouse(bool mouse) {
+    if (mouse == mouse_) return;
     mouse_ = mouse;
     showNext();
 }

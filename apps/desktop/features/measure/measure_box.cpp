@@ -303,11 +303,6 @@ void MeasureBox::setPermissions(const exercise::Permissions& permissions) {
         if (!box->isEnabled() && box->isChecked()) box->setChecked(false);
 }
 
-void MeasureBox::setLoadShown(bool shown) {
-    loadRow_->setVisible(shown);
-    passRow_->setVisible(shown);
-}
-
 void MeasureBox::setDetail(Detail detail) {
     detail_ = detail;
     const bool practice = detail == Detail::practice;

@@ -60,8 +60,6 @@ class MeasureBox : public QWidget {
     void setSectionRange(double leastMm, double mostMm);
     void setCalliperActive(bool active);
     void setPermissions(const exercise::Permissions& permissions);
-    /// A real device presses itself: no load to set.
-    void setLoadShown(bool shown);
     [[nodiscard]] PassRow* passRow() const noexcept { return passRow_; }
     void setDetail(Detail detail);
 

@@ -56,7 +56,6 @@ class ScanWizard : public QDialog {
     void showWork();
     void showProblem();
     void showSteps();
-    void showUnfinished();
     void saveSteps();
     [[nodiscard]] ScanPage* page(int step) const;
 

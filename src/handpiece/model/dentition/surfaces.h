@@ -29,7 +29,6 @@ class Profile {
     };
     explicit Profile(std::vector<Knot> knots);
     [[nodiscard]] double at(double z) const;
-    [[nodiscard]] double slopeAt(double z) const;
 
   private:
     std::vector<Knot> knots_;

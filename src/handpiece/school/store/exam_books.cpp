@@ -315,15 +315,6 @@ std::vector<ExamSitting> ExamBooks::sittingsOf(const std::string& exam) const {
     return all;
 }
 
-std::vector<ExamSitting> ExamBooks::sittingsOfPerson(const std::string& person) const {
-    std::vector<ExamSitting> all;
-    Statement rows =
-        state_.ask(fmt::format("{} WHERE person = $1 ORDER BY began, id", kSittingColumns).c_str(), person);
-    while (rows.next())
-        all.push_back(sittingOf(rows));
-    return all;
-}
-
 void ExamBooks::setDoubts(const std::string& sitting, const std::vector<std::string>& doubts, Milliseconds now) {
     Transaction transaction(*state_.database);
     state_.run(

@@ -111,7 +111,6 @@ class ExamBooks : public BooksRoom {
     [[nodiscard]] std::vector<ExamEntry> entriesOf(const std::string& sitting) const;
     [[nodiscard]] std::optional<ExamSitting> sitting(const std::string& id) const;
     [[nodiscard]] std::vector<ExamSitting> sittingsOf(const std::string& exam) const;
-    [[nodiscard]] std::vector<ExamSitting> sittingsOfPerson(const std::string& person) const;
 
     /// What a look at the sessions found; the newest counts.
     void setDoubts(const std::string& sitting, const std::vector<std::string>& doubts, Milliseconds now);

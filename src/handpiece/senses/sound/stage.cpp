@@ -78,7 +78,7 @@ struct Stage::State {
     ALCdevice* device = nullptr;
     ALCcontext* context = nullptr;
     std::string name;
-    bool hrtf = false, placed = false;
+    bool placed = false;
     int periodFrames = 1024;
     std::array<Queue, 2> queues;
     Place at;
@@ -151,11 +151,6 @@ struct Stage::State {
         if (!context)
             throw core::Error(fmt::format("OpenAL makes no context (error {:#x})", alcGetError(device)), name,
                               "check the sound settings");
-        ALCint value = 0;
-        if (alcIsExtensionPresent(device, "ALC_SOFT_HRTF")) {
-            alcGetIntegerv(device, ALC_HRTF_SOFT, 1, &value);
-            hrtf = value != ALC_FALSE;
-        }
         ALCint refresh = 0, rate = 0;
         alcGetIntegerv(device, ALC_REFRESH, 1, &refresh);
         alcGetIntegerv(device, ALC_FREQUENCY, 1, &rate);
@@ -194,9 +189,6 @@ Stage::~Stage() = default;
 
 const std::string& Stage::name() const noexcept {
     return state_->name;
-}
-bool Stage::hasHrtf() const noexcept {
-    return state_->hrtf;
 }
 int Stage::periodFrames() const noexcept {
     return state_->periodFrames;

@@ -25,7 +25,6 @@ class Stage {
     Stage& operator=(const Stage&) = delete;
 
     [[nodiscard]] const std::string& name() const noexcept;
-    [[nodiscard]] bool hasHrtf() const noexcept;
     /// Frames that the device asks for at a time, and their rate.
     [[nodiscard]] int periodFrames() const noexcept;
     [[nodiscard]] bool connected() const noexcept;

@@ -10,7 +10,7 @@
 #include "handpiece/model/tooth/tooth_state.h"
 #include "support/random.h"
 
-namespace handpiece::tooth::test {
+namespace handpiece::tooth::in_test {
 
 using core::Vec3;
 
@@ -121,4 +121,4 @@ inline std::size_t tornNodes(const ToothState& field) {
     return torn;
 }
 
-}  // namespace handpiece::tooth::test
+}  // namespace handpiece::tooth::in_test

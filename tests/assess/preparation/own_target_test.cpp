@@ -21,7 +21,7 @@ namespace handpiece::preparation::own_target_test {
 namespace {
 
 using core::Vec3;
-using tooth::test::cut;
+using tooth::in_test::cut;
 using zones::Zone;
 
 std::shared_ptr<const tooth::ToothModel> modelOf(const cases::Case& toothCase, double voxelMm) {

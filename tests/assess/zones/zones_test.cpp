@@ -20,7 +20,7 @@ namespace {
 
 using core::Vec2;
 using core::Vec3;
-using tooth::test::cut;
+using tooth::in_test::cut;
 
 /// A block of dentine under a layer of enamel 1 mm thick; its top is at z = 0.
 std::shared_ptr<const tooth::ToothModel> block(double voxelMm) {
@@ -32,7 +32,7 @@ std::shared_ptr<const tooth::ToothModel> block(double voxelMm) {
         const Vec3 d = (p + Vec3(0, 0, half.z())).cwiseAbs() - half;
         return d.cwiseMax(0.0).norm() + std::min(d.maxCoeff(), 0.0);
     };
-    auto tooth = tooth::test::toothOf(
+    auto tooth = tooth::in_test::toothOf(
         field::DistanceField::fromFunction({Vec3(-5.4, -3.9, -5.4), Vec3(5.4, 3.9, 0.4)}, field, box));
     const field::TissueMap::PartFunction dentine{[](const Vec3& p) { return p.z() + 1.0; }, cases::Tissue::dentine, 1};
     return tooth::withTissues(
@@ -84,7 +84,7 @@ TEST_P(VolumesByZone, AreThoseOfTheClosedForm) {
     {  // The ideal, as the product makes it, is that very cut.
         const tooth::StateDelta ideal = idealState(zones, model);
         tooth::ToothState by(model);
-        tooth::test::cutAway(by, [&](const Vec3& p) { return distanceTo(target, p); });
+        tooth::in_test::cutAway(by, [&](const Vec3& p) { return distanceTo(target, p); });
         EXPECT_EQ(tooth::stateHash(ideal), by.stateHash());
         EXPECT_NEAR(tooth::sumOf(ideal.removedMm3.own), whole, 0.005 * whole);
     }

@@ -31,7 +31,7 @@ DistanceField ballField(double radius) {
 }
 
 void expectSame(const TissueMap& a, const TissueMap& b, const DistanceField& field) {
-    for (std::uint32_t dense = 0; dense < tooth::test::denseCount(field); ++dense) {
+    for (std::uint32_t dense = 0; dense < tooth::in_test::denseCount(field); ++dense) {
         ASSERT_EQ(a.ofBrick(dense), b.ofBrick(dense));
         const TissueMap::Layers one = a.layers(dense), two = b.layers(dense);
         ASSERT_EQ(one.layers.size(), two.layers.size());
@@ -96,7 +96,7 @@ TEST(TissueMap, NodesLayersAndPointsTellTheSame) {
     const TissueMap map = TissueMap::fromFunctions(field, parts, cases::Tissue::enamel);
     const FieldView view = field.view();
     std::size_t mixed = 0, triple = 0;
-    for (std::uint32_t dense = 0; dense < tooth::test::denseCount(field); ++dense) {
+    for (std::uint32_t dense = 0; dense < tooth::in_test::denseCount(field); ++dense) {
         const std::uint8_t* nodes = map.nodes()->of(dense);
         const TissueMap::Layers layers = map.layers(dense);
         EXPECT_EQ(map.nodes()->isMixed(dense), !layers.layers.empty());

@@ -19,14 +19,14 @@ namespace handpiece::tooth::state_file_test {
 namespace {
 
 using core::Vec3;
-using test::ballTooth;
-using test::cutAway;
+using in_test::ballTooth;
+using in_test::cutAway;
 
 class CutStateFile : public ::testing::Test {
   protected:
     CutStateFile() : base(ballTooth(1.5, 0.8, 0.05)), key(base->identity) {
         ToothState field(base);
-        cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.4, 0.2, 0.1), 0.5); });
+        cutAway(field, [](const Vec3& p) { return in_test::ball(p - Vec3(1.4, 0.2, 0.1), 0.5); });
         TissueVolumes removed{};
         removed[1] = 0.1234567890123;
         removed[2] = 3.0;
@@ -109,7 +109,7 @@ TEST_F(CutStateFile, OneOfVersionOneIsReadAsItWas) {
 
 TEST_F(CutStateFile, ChangesToo) {
     ToothState field(base);
-    cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(0.0, 1.4, 0.1), 0.5); });
+    cutAway(field, [](const Vec3& p) { return in_test::ball(p - Vec3(0.0, 1.4, 0.1), 0.5); });
     const StateDelta change = changeBetween(state, field.state());
     expectSame(decodeState(encodeState(change, key), {base}), change);
 }
@@ -162,7 +162,7 @@ TEST_F(CutStateFile, RefusesEverythingElse) {
         EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
     }
     wrong = state;
-    wrong.bricks.back().id = test::denseCount(base->field);
+    wrong.bricks.back().id = in_test::denseCount(base->field);
     EXPECT_THAT(refusal(encodeState(wrong, key)), HasSubstr("damaged"));
     wrong = state;
     wrong.bricks.insert(wrong.bricks.begin(), {0, true, {}});  // a corner of the grid, outside the tooth

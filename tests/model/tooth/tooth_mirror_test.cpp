@@ -12,8 +12,8 @@ namespace handpiece::tooth::tooth_mirror_test {
 namespace {
 
 using core::Vec3;
-using test::ballTooth;
-using test::cutAway;
+using in_test::ballTooth;
+using in_test::cutAway;
 
 TEST(ToothMirror, FollowsTheField) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
@@ -24,7 +24,7 @@ TEST(ToothMirror, FollowsTheField) {
     std::vector<std::uint32_t> touched;
     for (int step = 0; step < 5; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * 1.4;
-        cutAway(field, [&](const Vec3& p) { return test::ball(p - centre, 0.3); });
+        cutAway(field, [&](const Vec3& p) { return in_test::ball(p - centre, 0.3); });
         (void)field.handOver(7, [&](const BrickSnapshot& s) {
             mirror.apply(s);
             touched.push_back(s.id);
@@ -66,8 +66,8 @@ TEST(ToothMirror, FollowsTheField) {
 TEST(StateDelta, ChangesLeadFromAnyStateToAnyOther) {
     const auto base = ballTooth(1.2, 0.6, 0.05);
     ToothState one(base), two(base);
-    cutAway(one, [](const Vec3& p) { return test::ball(p - Vec3(1.2, 0, 0), 0.4); });
-    cutAway(two, [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.6, 0), 0.4); });
+    cutAway(one, [](const Vec3& p) { return in_test::ball(p - Vec3(1.2, 0, 0), 0.4); });
+    cutAway(two, [](const Vec3& p) { return in_test::ball(p - Vec3(0.9, 0.6, 0), 0.4); });
     const StateDelta a = one.state(), b = two.state();
     const StateDelta change = changeBetween(a, b);
     std::size_t uncut = 0;

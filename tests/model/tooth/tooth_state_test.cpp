@@ -16,8 +16,8 @@ namespace handpiece::tooth::tooth_state_test {
 namespace {
 
 using core::Vec3;
-using test::ballTooth;
-using test::cutAway;
+using in_test::ballTooth;
+using in_test::cutAway;
 
 double ballMm3(double radius) {
     return 4.0 / 3.0 * std::numbers::pi * radius * radius * radius;
@@ -37,13 +37,13 @@ TEST(ToothState, VolumesByTissueAreThoseOfTheShapes) {
     EXPECT_EQ(field.volumesMm3(), base->volumesMm3);
 
     // A ball of 0.5 mm out of the dentine, and one out of enamel and dentine along x.
-    cutAway(field, [](const Vec3& p) { return test::ball(p, 0.5); });
+    cutAway(field, [](const Vec3& p) { return in_test::ball(p, 0.5); });
     const TissueVolumes once = field.volumesMm3();
     EXPECT_NEAR(of(base->volumesMm3, cases::Tissue::dentine) - of(once, cases::Tissue::dentine), ballMm3(0.5),
                 4e-3 * ballMm3(0.5));
     EXPECT_EQ(of(once, cases::Tissue::enamel), of(base->volumesMm3, cases::Tissue::enamel));
     const Vec3 there(1.2, 0.0, 0.0);
-    cutAway(field, [&](const Vec3& p) { return test::ball(p - there, 0.3); });
+    cutAway(field, [&](const Vec3& p) { return in_test::ball(p - there, 0.3); });
     const TissueVolumes twice = field.volumesMm3();
     const double enamel = of(once, cases::Tissue::enamel) - of(twice, cases::Tissue::enamel),
                  dentine = of(once, cases::Tissue::dentine) - of(twice, cases::Tissue::dentine);
@@ -64,7 +64,7 @@ TEST(ToothState, WholeBricksAgreeOnTheNodesTheyShare) {
         ToothState field(base);
         const field::FieldView view = field.field().view();
         std::size_t fresh = 0;
-        for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
+        for (std::uint32_t dense = 0; dense < in_test::denseCount(field.field()); ++dense) {
             const bool had = view.brickIndex[dense] >= 0;
             const std::int32_t stored = field.storeBrick(dense);
             if (!had && stored >= 0) ++fresh;
@@ -72,11 +72,11 @@ TEST(ToothState, WholeBricksAgreeOnTheNodesTheyShare) {
         }
         EXPECT_FALSE(field.outOfBricks());
         EXPECT_EQ(fresh, base->settings.reserveBricks);
-        EXPECT_EQ(test::tornNodes(field), 0u);
+        EXPECT_EQ(in_test::tornNodes(field), 0u);
         EXPECT_EQ(field.volumesMm3(), base->volumesMm3);
         EXPECT_TRUE(field.state().bricks.empty());
         // The bounds never claim to be deeper than it is.
-        for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
+        for (std::uint32_t dense = 0; dense < in_test::denseCount(field.field()); ++dense) {
             if (view.brickIndex[dense] < 0) continue;
             const auto brick = field::brickAt(view.bricks, dense);
             for (int i = 0; i < field::kBrickValues; i += 7) {
@@ -84,7 +84,7 @@ TEST(ToothState, WholeBricksAgreeOnTheNodesTheyShare) {
                 Vec3 p;
                 for (int k = 0; k < 3; ++k)
                     p[k] = view.originMm[k] + view.voxelMm * (8 * brick[static_cast<std::size_t>(k)] + node[k]);
-                const double value = field.values(view.brickIndex[dense])[i], wanted = test::ball(p, 2.0);
+                const double value = field.values(view.brickIndex[dense])[i], wanted = in_test::ball(p, 2.0);
                 EXPECT_GE(value, std::clamp(wanted, -band, base->bandOutMm) - 1e-6);
                 EXPECT_LE(value, std::max(0.0, wanted) + 1e-6);
             }
@@ -94,21 +94,21 @@ TEST(ToothState, WholeBricksAgreeOnTheNodesTheyShare) {
 
 TEST(ToothState, HashesTheToothAndNotItsHistory) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
-    const auto shapeA = [](const Vec3& p) { return test::ball(p - Vec3(1.4, 0, 0), 0.4); };
-    const auto shapeB = [](const Vec3& p) { return test::ball(p - Vec3(0.9, 0.5, 0), 0.4); };
+    const auto shapeA = [](const Vec3& p) { return in_test::ball(p - Vec3(1.4, 0, 0), 0.4); };
+    const auto shapeB = [](const Vec3& p) { return in_test::ball(p - Vec3(0.9, 0.5, 0), 0.4); };
     ToothState one(base), two(base);
     EXPECT_EQ(one.stateHash(), two.stateHash());
     cutAway(one, shapeA);
     EXPECT_NE(one.stateHash(), two.stateHash());
     cutAway(one, shapeB);
     // The other way round, after bricks that stay uncut were stored.
-    for (std::uint32_t dense = test::denseCount(two.field()); dense-- > 0;)
+    for (std::uint32_t dense = in_test::denseCount(two.field()); dense-- > 0;)
         if (dense % 3 == 0) (void)two.storeBrick(dense);
     cutAway(two, shapeB);
     cutAway(two, shapeA);
     EXPECT_EQ(one.stateHash(), two.stateHash());
-    EXPECT_EQ(test::tornNodes(one), 0u);
-    EXPECT_EQ(test::tornNodes(two), 0u);
+    EXPECT_EQ(in_test::tornNodes(one), 0u);
+    EXPECT_EQ(in_test::tornNodes(two), 0u);
     core::setThreadCount(1);
     const TissueVolumes alone = two.volumesMm3();
     core::setThreadCount(0);
@@ -123,11 +123,11 @@ TEST(ToothState, RestoresInPiecesWithoutATear) {
     for (int step = 0; step < 4; ++step) {
         const Vec3 centre = handpiece::test::randomDirection(generator) * handpiece::test::uniform(generator, 0.0, 1.6);
         const double radius = handpiece::test::uniform(generator, 0.2, 0.6);
-        cutAway(field, [&](const Vec3& p) { return test::ball(p - centre, radius); });
+        cutAway(field, [&](const Vec3& p) { return in_test::ball(p - centre, radius); });
         TissueVolumes removed{};
         removed[1] = step + 1.0;
         field.addRemoved(removed);
-        EXPECT_EQ(test::tornNodes(field), 0u);
+        EXPECT_EQ(in_test::tornNodes(field), 0u);
         states.push_back(field.state());
     }
     for (int step = 0; step < 12; ++step) {
@@ -139,11 +139,11 @@ TEST(ToothState, RestoresInPiecesWithoutATear) {
             from = field.restore(change, from, most);
             ASSERT_LE(calls, 100000);
             if (calls % 16 == 0) {
-                ASSERT_EQ(test::tornNodes(field), 0u);
+                ASSERT_EQ(in_test::tornNodes(field), 0u);
             }
         }
         if (change.bricks.empty()) (void)field.restore(change, 0, most);
-        EXPECT_EQ(test::tornNodes(field), 0u);
+        EXPECT_EQ(in_test::tornNodes(field), 0u);
         EXPECT_EQ(field.stateHash(), stateHash(target));
         EXPECT_EQ(field.removedMm3(), target.removedMm3.own);
     }
@@ -152,7 +152,7 @@ TEST(ToothState, RestoresInPiecesWithoutATear) {
 TEST(ToothState, IsPutBackToTheBitAlsoWhereBricksAreAnUlpApart) {
     const auto base = ballTooth(2.0, 1.0, 0.05);
     ToothState cut(base);
-    cutAway(cut, [](const Vec3& p) { return test::ball(p - Vec3(1.9, 0.1, -0.2), 0.5); });
+    cutAway(cut, [](const Vec3& p) { return in_test::ball(p - Vec3(1.9, 0.1, -0.2), 0.5); });
     StateDelta state = cut.state();
     // As a cut leaves it: one brick has risen by an ulp at nodes where its neighbour, which did not change, has not.
     std::size_t apart = 0;
@@ -190,21 +190,21 @@ TEST(ToothState, IsPutBackToTheBitAlsoWhereBricksAreAnUlpApart) {
 TEST(ToothState, BoundsInTheCoreHoldAfterARestore) {
     const auto base = ballTooth(3.0, 2.0, 0.05);
     const Vec3 at(2.6, 0.3, -0.2);
-    const auto shape = [&](const Vec3& p) { return test::ball(p - at, 0.9); };
+    const auto shape = [&](const Vec3& p) { return in_test::ball(p - at, 0.9); };
     ToothState cut(base), field(base);
     cutAway(cut, shape);
     const StateDelta state = cut.state();
     (void)field.restore(state, 0, state.bricks.size());
     const field::FieldView view = field.field().view(), before = base->field.view();
     std::size_t raised = 0, core = 0;
-    for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense) {
+    for (std::uint32_t dense = 0; dense < in_test::denseCount(field.field()); ++dense) {
         if (view.brickIndex[dense] >= 0 || before.coarse[dense] >= 0.0f) continue;
         const auto brick = field::brickAt(view.bricks, dense);
         Vec3 centre;
         for (int k = 0; k < 3; ++k)
             centre[k] = view.originMm[k] + view.voxelMm * (8 * brick[static_cast<std::size_t>(k)] + 4);
         EXPECT_LT(view.coarse[dense], 0.0f);
-        EXPECT_GE(view.coarse[dense], std::max(-2.0, std::max(test::ball(centre, 3.0), -shape(centre))) - 1e-5);
+        EXPECT_GE(view.coarse[dense], std::max(-2.0, std::max(in_test::ball(centre, 3.0), -shape(centre))) - 1e-5);
         raised += view.coarse[dense] > std::max(before.coarse[dense], -2.0f);
         ++core;
     }
@@ -213,7 +213,7 @@ TEST(ToothState, BoundsInTheCoreHoldAfterARestore) {
     // And all is as it was when nothing is cut any more.
     const StateDelta undo = changeBetween(state, StateDelta{});
     (void)field.restore(undo, 0, undo.bricks.size());
-    for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense)
+    for (std::uint32_t dense = 0; dense < in_test::denseCount(field.field()); ++dense)
         ASSERT_EQ(view.coarse[dense], std::max(before.coarse[dense], -2.0f));
 }
 
@@ -226,7 +226,7 @@ TEST(ToothState, SaysWhereItIsCut) {
     EXPECT_FALSE(near(Vec3::Zero(), 10.0));
     const StateDelta uncut = field.state();
     const Vec3 at(1.5, 0.0, 0.0);
-    cutAway(field, [&](const Vec3& p) { return test::ball(p - at, 0.3); });
+    cutAway(field, [&](const Vec3& p) { return in_test::ball(p - at, 0.3); });
     EXPECT_TRUE(near(at, 0.1));
     EXPECT_TRUE(near(Vec3::Zero(), 10.0));
     EXPECT_FALSE(near(-at, 0.5));
@@ -262,7 +262,7 @@ TEST(ToothState, HandsOverEveryChangeOnceInTurn) {
     const auto base = ballTooth(1.5, 0.8, 0.05);
     ToothState field(base);
     EXPECT_EQ(field.handOver(10, [](const BrickSnapshot&) { return true; }), 0u);
-    cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.5, 0, 0), 0.4); });
+    cutAway(field, [](const Vec3& p) { return in_test::ball(p - Vec3(1.5, 0, 0), 0.4); });
     const std::size_t waiting = field.waitingBricks();
     ASSERT_GT(waiting, 20u);
     EXPECT_EQ(field.handOver(10, [](const BrickSnapshot&) { return false; }), 0u);
@@ -287,23 +287,23 @@ TEST(ToothState, RunsOutOfBricksWithoutHarm) {
     settings.reserveBricks = 3;
     const auto base = ballTooth(2.0, 0.8, 0.05, settings);
     ToothState field(base);
-    cutAway(field, [](const Vec3& p) { return test::ball(p, 0.8); });
+    cutAway(field, [](const Vec3& p) { return in_test::ball(p, 0.8); });
     EXPECT_TRUE(field.outOfBricks());
     EXPECT_EQ(field.state().bricks.size(), 3u);
-    EXPECT_EQ(test::tornNodes(field), 0u);
+    EXPECT_EQ(in_test::tornNodes(field), 0u);
 }
 
 TEST(ToothState, KeepsTheTicksLaw) {
     if (!handpiece::test::RealtimeTrap::isActive()) GTEST_SKIP() << "sanitizers own malloc";
     const auto base = ballTooth(1.5, 0.8, 0.05);
     ToothState field(base);
-    cutAway(field, [](const Vec3& p) { return test::ball(p - Vec3(1.5, 0, 0), 0.4); });
+    cutAway(field, [](const Vec3& p) { return in_test::ball(p - Vec3(1.5, 0, 0), 0.4); });
     const StateDelta cut = field.state();
     const StateDelta change = changeBetween(cut, StateDelta{});
     std::uint64_t calls = 0;
     {
         const handpiece::test::RealtimeTrap trap;
-        for (std::uint32_t dense = 0; dense < test::denseCount(field.field()); ++dense)
+        for (std::uint32_t dense = 0; dense < in_test::denseCount(field.field()); ++dense)
             if (field.storeBrick(dense) >= 0) field.noteChanged(dense, dense % 2 == 0);
         (void)field.isCutNear({Vec3::Constant(-1), Vec3::Constant(1)});
         (void)field.handOver(50, [](const BrickSnapshot&) { return true; });

@@ -73,7 +73,7 @@ class Bored : public testing::Test {
     static void SetUpTestSuite() {
         base_ = toothOf(test::sphereMesh(5, kOuter));
         field_ = std::make_unique<tooth::ToothState>(base_);
-        tooth::test::cutAway(*field_, [](const Vec3& p) { return boring(p, kFloor); });
+        tooth::in_test::cutAway(*field_, [](const Vec3& p) { return boring(p, kFloor); });
         mirror_ = std::make_unique<tooth::ToothMirror>(base_);
         mirror_->apply(field_->state());
         uncut_ = std::make_unique<tooth::ToothMirror>(base_);
@@ -271,7 +271,7 @@ TEST_F(Bored, dentineOverThePulpIsTheWayToIt) {
 TEST(ToothProbe, anOpenedPulpHasNothingOverIt) {
     const auto base = toothOf(test::sphereMesh(4, kOuter));
     tooth::ToothState field(base);
-    tooth::test::cutAway(field, [](const Vec3& p) { return boring(p, 0.3); });
+    tooth::in_test::cutAway(field, [](const Vec3& p) { return boring(p, 0.3); });
     tooth::ToothMirror mirror(base);
     mirror.apply(field.state());
     const auto thinnest = ToothProbe(mirror).thinnestOverPulp();

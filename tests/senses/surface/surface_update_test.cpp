@@ -32,10 +32,10 @@ struct Cutting {
     tooth::ToothMirror mirror;
 
     explicit Cutting(std::shared_ptr<const tooth::ToothModel> tooth) : base(tooth), field(tooth), mirror(tooth) {}
-    explicit Cutting(double voxelMm = 0.05) : Cutting(tooth::test::ballTooth(1.2, 0.8, voxelMm)) {}
+    explicit Cutting(double voxelMm = 0.05) : Cutting(tooth::in_test::ballTooth(1.2, 0.8, voxelMm)) {}
 
     void cut(const test::Distance& bur) {
-        tooth::test::cutAway(field, bur);
+        tooth::in_test::cutAway(field, bur);
         field.handOver(field.waitingBricks(), [&](const tooth::BrickSnapshot& snapshot) {
             mirror.apply(snapshot);
             return true;
@@ -174,7 +174,7 @@ tooth::StateDelta ballCut(const tooth::ToothMirror& mirror, const BrickGrid& gri
 
 TEST(SurfaceUpdate, GivesTheSameMeshesThroughUndo) {
     std::mt19937_64 random(test::seed());
-    const Cutting cutting(tooth::test::ballTooth(0.4, 0.25, 0.05));
+    const Cutting cutting(tooth::in_test::ballTooth(0.4, 0.25, 0.05));
     tooth::ToothMirror mirror(cutting.base);
     const MirrorSource source(mirror);
     Surface kept(source, &cutting.base->tissues);
@@ -211,7 +211,7 @@ TEST(SurfaceUpdate, SnapshotsThatArriveOneByOneEndInTheSameSurface) {
     kept.build();
     for (int i = 0; i < 3; ++i) {
         const Vec3 at = 1.1 * test::randomDirection(random);
-        tooth::test::cutAway(cutting.field, test::sphere(at, 0.35));
+        tooth::in_test::cutAway(cutting.field, test::sphere(at, 0.35));
         // One brick a picture: neighbours do not agree in between.
         while (cutting.field.waitingBricks() > 0) {
             cutting.field.handOver(1, [&](const tooth::BrickSnapshot& snapshot) {
@@ -303,7 +303,7 @@ TEST(SurfaceTissues, MeetInALineOnTheirBoundary) {
         // A plane between dentine and enamel, askew to the grid, and a bur that cuts across it.
         const Vec3 normal = test::randomDirection(random);
         const double offset = test::uniform(random, -0.3, 0.3);
-        auto tooth = tooth::test::toothOf(
+        auto tooth = tooth::in_test::toothOf(
             test::sampled(test::sphere(Vec3::Zero(), 1.0), {Vec3::Constant(-1.1), Vec3::Constant(1.1)}));
         const auto plane = [=](const Vec3& p) { return normal.dot(p) - offset; };
         const field::TissueMap::PartFunction dentine{plane, Tissue::dentine, 1};
@@ -343,7 +343,7 @@ TEST(SurfaceTissues, MeetInALineOnTheirBoundary) {
 
 TEST(ClosedSurface, WholeAndPartsHoldWhatTheFieldHolds) {
     std::mt19937_64 random(test::seed());
-    Cutting cutting(tooth::test::ballTooth(1.2, 0.83, 0.05));
+    Cutting cutting(tooth::in_test::ballTooth(1.2, 0.83, 0.05));
     const MirrorSource source(cutting.mirror);
     const auto ball = [](double r) { return 4.0 / 3.0 * std::numbers::pi * r * r * r; };
     const geometry::TriangleMesh dentine = closedPart(source, cutting.base->tissues, Tissue::dentine),

@@ -181,6 +181,16 @@ function(handpiece_test_again name of test)
     get_property(files GLOBAL PROPERTY HANDPIECE_SOURCES_OF_${test})
     add_test(NAME ${name} COMMAND ${program} --sources=${files})
     set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
+    handpiece_test_by_name(${name} ${program} ${files})
+endfunction()
+
+# By hand: ninja mouth_test && build/dev/bin/mouth_test --gtest_filter=...
+function(handpiece_test_by_name name program files)
+    add_custom_target(${name})
+    set_property(GLOBAL APPEND PROPERTY HANDPIECE_NAMED_TESTS ${name} ${program})
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/bin/${name} @ONLY
+        CONTENT "#!/bin/sh\nexec \"$(dirname \"$0\")/@program@\" --sources=@files@ \"$@\"\n")
+    file(CHMOD ${PROJECT_BINARY_DIR}/bin/${name} PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE)
 endfunction()
 
 # handpiece_test_with(name DEFINES ... INCLUDES folder... NEEDS program...): what else the test's program is built with.
@@ -214,4 +224,9 @@ function(handpiece_test_programs)
             add_dependencies(${program} ${NEEDS})
         endif()
     endforeach()
+    get_property(named GLOBAL PROPERTY HANDPIECE_NAMED_TESTS)
+    while(named)
+        list(POP_FRONT named name program)
+        add_dependencies(${name} ${program})
+    endwhile()
 endfunction()

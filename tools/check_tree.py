@@ -18,6 +18,12 @@ OWN_JSON = re.compile(r"src/handpiece/base/config/outside_json\.h|src/handpiece/
 MACHINE_PATH = re.compile(r"(?<![\w.])/(work|home|root|Users)/\w")
 
 
+def own_namespace(path, text):
+    """What a test's namespace has to end in, unless it does."""
+    found = re.search(r"^namespace ([\w:]+) \{$", text, re.M)
+    return path.stem if path.stem.endswith("_test") and found and not found.group(1).endswith("::" + path.stem) else None
+
+
 def main():
     breaches = []
     sources = [p for folder in ("src", "apps", "tests", "bench", "examples") for p in sorted((ROOT / folder).rglob("*")) if p.suffix in (".h", ".cpp")]
@@ -31,6 +37,8 @@ def main():
                 breaches.append(f"{rel}: the first line is not the licence's")
             if JSON_PARSE.search(text) and not OWN_JSON.fullmatch(rel):
                 breaches.append(f"{rel}: reads JSON unbounded: use config::outsideJson()")
+            if (own := own_namespace(path, text)):
+                breaches.append(f"{rel}: is compiled together with others, so its namespace ends in ::{own}")
             if text.count("\n") > MAX_LINES:
                 breaches.append(f"{rel}: {text.count(chr(10))} lines, more than {MAX_LINES}")
         if path.name != "check_tree.py":

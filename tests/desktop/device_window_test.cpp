@@ -18,8 +18,8 @@
 
 #include "desktop/features/device/fidelity_box.h"
 #include "desktop/features/device/first_plug_in.h"
-#include "desktop/features/drill/welcome_strip.h"
 #include "desktop/features/device/profile_box.h"
+#include "desktop/features/drill/welcome_strip.h"
 #include "desktop/widgets/notice_bar.h"
 #include "devices/drivers/gamepad_virtual.h"
 #include "handpiece/app/simulation/cut_session.h"

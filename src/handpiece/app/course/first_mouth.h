@@ -13,8 +13,8 @@ namespace handpiece::course {
 inline constexpr int kFirstFdi = 46;
 inline constexpr std::size_t kFirstFaces = 68151;
 
-/// The mouth with a finer tooth in the place, and the frame, of the one that is worked on: its antagonists have ground it
-/// as they had the one before.
+/// The mouth with a finer tooth in the place, and the frame, of the one that is worked on: its antagonists have ground
+/// it as they had the one before.
 [[nodiscard]] cases::Case standIn(cases::Tooth tooth, cases::Case mouth);
 
 /// The tooth in the mouth of the ordinary patient, kept in `folder` as keptTooth() and keptMouth() do.

@@ -45,7 +45,7 @@ struct Ready {
     preparation::Laid laid;
     std::function<double(const Vec3&)> othersMm;  ///< to teeth beside it that can be cut
     instrument::Instrument instrument;
-    HandOptions hand;
+    PlanOptions hand;
     device::Motion well = device::Motion({{0.0, {}, 0.0}});
 
     [[nodiscard]] const cases::Landmark& mark(LandmarkKind kind, const std::string& name = {}) const {

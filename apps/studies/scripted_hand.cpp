@@ -32,7 +32,7 @@ constexpr double kSpinUpS = 0.8;
 /// The scene on a grid whose z is the path of draw, and the bur in it.
 class Plan {
   public:
-    Plan(const HandScene& scene, const instrument::Bur& bur, const HandOptions& o) : scene_(scene), o_(o) {
+    Plan(const HandScene& scene, const instrument::Bur& bur, const PlanOptions& o) : scene_(scene), o_(o) {
         turn_ = core::rotationBetween(Vec3::UnitZ(), scene.draw);
         core::Box box;
         for (int i = 0; i < 8; ++i)
@@ -301,7 +301,7 @@ class Plan {
     }
 
     const HandScene& scene_;
-    const HandOptions& o_;
+    const PlanOptions& o_;
     Quat turn_;
     Vec3 low_;
     Vec2 first_, last_;
@@ -315,7 +315,7 @@ class Plan {
 
 }  // namespace
 
-device::Motion planPreparation(const HandScene& scene, const instrument::Bur& bur, const HandOptions& options) {
+device::Motion planPreparation(const HandScene& scene, const instrument::Bur& bur, const PlanOptions& options) {
     return Plan(scene, bur, options).motion();
 }
 

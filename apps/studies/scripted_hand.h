@@ -22,7 +22,7 @@ struct HandScene {
     core::Box box;                                      ///< holds what may go of the tooth
     core::Vec3 draw = core::Vec3::UnitZ();              ///< along which the shank stands
 };
-struct HandOptions {
+struct PlanOptions {
     double cellMm = 0.1;  ///< of the grid that it plans on
     double rowMm = 0.2;   ///< between strokes; a round tip of 0.8 mm leaves ridges of 13 um
     double layerMm = 0.25;
@@ -34,7 +34,7 @@ struct HandOptions {
 /// the floor; between them straight through what is free, else out along the shank and in again. The ends of rows are
 /// sought to 5 um. Throws core::Error when the bur fits nowhere.
 [[nodiscard]] device::Motion planPreparation(const HandScene& scene, const instrument::Bur& bur,
-                                             const HandOptions& options = {});
+                                             const PlanOptions& options = {});
 /// Of a task laid onto its tooth. `others`: distance to the teeth beside it.
 [[nodiscard]] HandScene handSceneOf(const preparation::Laid& laid, std::function<double(const core::Vec3&)> others);
 

@@ -96,8 +96,8 @@ TEST(Preparation, LeftIsRightInTheMirror) {
     for (int i = 0; i < 5000; ++i) {
         const Vec3 p(test::uniform(random, box.min.x(), box.max.x()), test::uniform(random, box.min.y(), box.max.y()),
                      test::uniform(random, box.min.z(), box.max.z()));
-        EXPECT_NEAR(right.zones->targetMm(p), left.zones->targetMm(Vec3(p.x(), -p.y(), p.z())), 0.08)
-            << "meshes are not each other's mirror; a stroke ends within its pieces of 0.05 mm";
+        EXPECT_NEAR(right.zones->targetMm(p), left.zones->targetMm(Vec3(p.x(), -p.y(), p.z())), 0.1)
+            << "meshes are not each other's mirror; a stroke ends within its pieces of 0.05 mm, at either end";
     }
 }
 

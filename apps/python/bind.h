@@ -20,6 +20,8 @@ namespace py = pybind11;
 
 struct Mesh {
     std::shared_ptr<const geometry::TriangleMesh> mesh;
+    std::shared_ptr<const geometry::VertexColours> colours{};  ///< one a vertex; null or empty: it has none
+    [[nodiscard]] bool hasColours() const { return colours && !colours->empty(); }
 };
 struct Case {
     std::shared_ptr<const cases::Case> it;

@@ -20,15 +20,16 @@ struct Part {
     Mesh mesh;
 };
 
-Mesh meshIn(const std::shared_ptr<const cases::Case>& owner, const geometry::TriangleMesh& mesh) {
-    return {std::shared_ptr<const geometry::TriangleMesh>(owner, &mesh)};
+Mesh meshIn(const std::shared_ptr<const cases::Case>& owner, const geometry::TriangleMesh& mesh,
+            const geometry::VertexColours& colours) {
+    return {{owner, &mesh}, {owner, &colours}};
 }
 
 std::vector<Part> partsOf(const std::shared_ptr<const cases::Case>& owner, const std::vector<cases::Part>& parts) {
     std::vector<Part> all;
     for (const cases::Part& part : parts)
-        all.push_back(
-            {part.name, std::string(cases::properties(part.tissue).name), part.priority, meshIn(owner, part.mesh)});
+        all.push_back({part.name, std::string(cases::properties(part.tissue).name), part.priority,
+                       meshIn(owner, part.mesh, part.colours)});
     return all;
 }
 
@@ -50,7 +51,7 @@ std::vector<Standing> othersOf(const Case& c) {
                        t.fdiNumber,
                        t.isCuttable,
                        {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()},
-                       meshIn(c.it, t.surface())});
+                       meshIn(c.it, t.surface(), t.surfaceColours())});
     }
     return all;
 }
@@ -138,7 +139,7 @@ void bindCase(py::module_& module) {
             "path", [](const Case& c) { return c.path.empty() ? py::object(py::none()) : py::str(c.path); },
             "Of the file that it was read from; None of one that was made.")
         .def_property_readonly(
-            "outer", [](const Case& c) { return meshIn(c.it, c.it->surface()); },
+            "outer", [](const Case& c) { return meshIn(c.it, c.it->surface(), c.it->surfaceColours()); },
             "The whole tooth as one closed surface.")
         .def_property_readonly(
             "parts", [](const Case& c) { return partsOf(c.it, c.it->parts); }, "A surface for each tissue.")

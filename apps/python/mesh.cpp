@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "handpiece/app/scan_case/textures.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/geometry/inspect.h"
 #include "handpiece/base/geometry/mesh_io.h"
@@ -18,8 +19,9 @@
 namespace handpiece::python {
 namespace {
 
-Mesh meshOf(geometry::TriangleMesh mesh) {
-    return {std::make_shared<const geometry::TriangleMesh>(std::move(mesh))};
+Mesh meshOf(geometry::TriangleMesh mesh, geometry::VertexColours colours = {}) {
+    return {std::make_shared<const geometry::TriangleMesh>(std::move(mesh)),
+            std::make_shared<const geometry::VertexColours>(std::move(colours))};
 }
 
 Mesh makeMesh(const py::object& vertices, const py::object& faces) {
@@ -56,7 +58,8 @@ Mesh readMesh(const py::object& path, const std::string& unit) {
     Mesh mesh;
     {
         const py::gil_scoped_release released;
-        mesh = meshOf(geometry::scaled(geometry::readMesh(file, &notes), mm));
+        geometry::ColouredMesh read = geometry::readColouredMesh(file, &notes);
+        mesh = meshOf(geometry::scaled(std::move(read.mesh), mm), std::move(read.colours));
     }
     for (const std::string& note : notes)
         if (PyErr_WarnEx(PyExc_UserWarning, (file + ": " + note).c_str(), 1) != 0) throw py::error_already_set();
@@ -90,7 +93,9 @@ py::tuple repairMesh(const Mesh& mesh, std::optional<double> weldMm, bool keepDe
         settings.base = base || baseDepthMm;
         if (baseDepthMm) settings.baseDepthMm = *baseDepthMm;
         text = studies::toJson(geometry::repair(work, settings)).dump();
-        mended = meshOf(std::move(work));
+        geometry::VertexColours colours;
+        if (mesh.hasColours()) colours = geometry::coloursFrom(*mesh.mesh, *mesh.colours, work);
+        mended = meshOf(std::move(work), std::move(colours));
     }
     return py::make_tuple(mended, fromJson(text));
 }
@@ -98,7 +103,9 @@ py::tuple repairMesh(const Mesh& mesh, std::optional<double> weldMm, bool keepDe
 }  // namespace
 
 void bindMesh(py::module_& module) {
-    static_assert(sizeof(core::Vec3) == 3 * sizeof(double) && sizeof(geometry::Triangle) == 12);
+    static_assert(sizeof(core::Vec3) == 3 * sizeof(double) && sizeof(geometry::Triangle) == 12 &&
+                  sizeof(geometry::Colour) == 3);
+    scan_case::readTextures();
     py::class_<Mesh>(module, "Mesh",
                      "A triangle mesh [mm], counter-clockwise from outside. Never changes.\n\n"
                      "Mesh(vertices, faces) copies what it is given.\n\n"
@@ -125,6 +132,16 @@ void bindMesh(py::module_& module) {
             },
             "Numbers of vertices, (m, 3) uint32: a view, read-only.")
         .def_property_readonly(
+            "colours",
+            [](const py::object& self) -> py::object {
+                const auto& mesh = self.cast<const Mesh&>();
+                if (!mesh.hasColours()) return py::none();
+                return viewOf(reinterpret_cast<const std::uint8_t*>(mesh.colours->data()),
+                              {static_cast<py::ssize_t>(mesh.colours->size()), 3}, self);
+            },
+            "Red, green and blue of each vertex as a scanner saw it, (n, 3) uint8, sRGB: a view, read-only. None of a "
+            "mesh without.")
+        .def_property_readonly(
             "area_mm2", [](const Mesh& m) { return geometry::surfaceAreaMm2(*m.mesh); }, "Of all faces.")
         .def_property_readonly(
             "volume_mm3", [](const Mesh& m) { return geometry::enclosedVolumeMm3(*m.mesh); },
@@ -134,7 +151,7 @@ void bindMesh(py::module_& module) {
              "    As `handpiece mesh info --json` tells: closed, oriented, open_edges, volume_mm3, crossing_faces, ...")
         .def("repair", &repairMesh, py::arg("weld_mm") = py::none(), py::arg("keep_debris") = false,
              py::arg("base") = false, py::arg("base_depth_mm") = py::none(),
-             "Mend: weld, close holes, orient, drop debris. This mesh stays as it is.\n\n"
+             "Mend: weld, close holes, orient, drop debris. This mesh stays as it is; colours go with its surface.\n\n"
              "Parameters\n----------\n"
              "weld_mm : float, optional\n    Vertices nearer than this become one [mm]; 1e-5 of the diagonal if None.\n"
              "keep_debris : bool\n    Keep shells of less than 1 % of the largest one's area.\n"
@@ -150,15 +167,16 @@ void bindMesh(py::module_& module) {
             [](const Mesh& mesh, const py::object& path) {
                 const std::string file = pathFrom(path);
                 const py::gil_scoped_release released;
-                geometry::writeMesh(file, *mesh.mesh);
+                geometry::writeMesh(file, *mesh.mesh, mesh.hasColours() ? *mesh.colours : geometry::VertexColours());
             },
-            py::arg("path"), "Write a .stl (float32) or a .ply (nothing is lost), whole or not at all.")
+            py::arg("path"),
+            "Write a .stl (float32, without colours) or a .ply (nothing is lost), whole or not at all.")
         .def("__repr__", [](const Mesh& m) {
             return fmt::format("<handpiece.Mesh: {} vertices, {} faces>", m.mesh->vertices.size(),
                                m.mesh->triangles.size());
         });
     module.def("read_mesh", &readMesh, py::arg("path"), py::arg("unit") = "mm",
-               "Read a STL, PLY or OBJ file.\n\n"
+               "Read a STL, PLY or OBJ file; its colours too, at its vertices or in the pictures beside an OBJ.\n\n"
                "Parameters\n----------\npath : path\nunit : str\n    Of the file: mm, cm, m, inch or um.\n\n"
                "Returns\n-------\nMesh\n\nRaises\n------\nError\n    No mesh, damaged, or not to be read.\n\n"
                "Warns\n-----\nUserWarning\n    Something was left out of the file.");

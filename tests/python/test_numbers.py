@@ -3,11 +3,22 @@
 import csv
 import io
 import json
+import struct
 import unittest
+import zlib
 
 import numpy as np
 
 from support import FOLDER, Test, block, box, command, hp, molar, plunge, poses, tooth
+
+
+def png(rows):
+    """A picture of 8-bit colours."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    lines = b"".join(b"\0" + bytes(value for pixel in row for value in pixel) for row in rows)
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", len(rows[0]), len(rows), 8, 2, 0, 0, 0)) +
+            chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
 class Probing(Test):
@@ -121,6 +132,36 @@ class Meshes(Test):
         path = FOLDER / "inches.ply"
         box((0, 0, 0), (1, 1, 1)).write(path)
         self.assertEqual(hp.read_mesh(path, "inch").vertices.max(), 25.4)
+
+    def test_colours(self):
+        whole = box((0, 0, 0), (2, 3, 4))
+        self.assertIsNone(whole.colours)
+        given = np.arange(24, dtype=np.uint8).reshape(8, 3) * 10
+        path, again, mended = (FOLDER / name for name in ("coloured.ply", "again.ply", "coloured-mended.ply"))
+        path.write_text("ply\nformat ascii 1.0\nelement vertex 8\n" +
+                        "".join(f"property float {axis}\n" for axis in "xyz") +
+                        "".join(f"property uchar {name}\n" for name in ("red", "green", "blue")) +
+                        "element face 11\nproperty list uchar int vertex_indices\nend_header\n" +
+                        "".join(" ".join(map(str, [*p, *c])) + "\n" for p, c in zip(whole.vertices.tolist(), given.tolist())) +
+                        "".join("3 " + " ".join(map(str, f)) + "\n" for f in whole.faces[:-1].tolist()))
+        mesh = hp.read_mesh(path)
+        np.testing.assert_array_equal(mesh.colours, given)
+        self.assertEqual((mesh.colours.dtype, mesh.colours.flags.writeable), (np.uint8, False))
+        mesh.write(again)
+        np.testing.assert_array_equal(hp.read_mesh(again).colours, given)
+        command("mesh", "repair", path, mended)
+        closed, _ = mesh.repair()
+        np.testing.assert_array_equal(closed.colours, hp.read_mesh(mended).colours)
+        np.testing.assert_array_equal(hp.read_case(mended).outer.colours, closed.colours)
+
+    def test_colours_of_a_picture(self):
+        folder = FOLDER / "textured"
+        folder.mkdir()
+        (folder / "two.png").write_bytes(png([[(255, 0, 0), (0, 0, 255)]]))
+        (folder / "a.mtl").write_text("newmtl skin\nmap_Kd two.png\n")
+        (folder / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl skin\n"
+                                      "f 1/1 2/2 3/3\n")
+        np.testing.assert_array_equal(hp.read_mesh(folder / "a.obj").colours, [[255, 0, 0], [0, 0, 255], [255, 0, 0]])
 
 
 class Fields(Test):

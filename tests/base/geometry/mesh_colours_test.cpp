@@ -231,16 +231,16 @@ TEST_F(Textured, AnObjHasTheColoursOfItsPicture) {
 
 TEST_F(Textured, WhatIsNotThereIsToldOnceAndTheSurfaceIsRead) {
     std::filesystem::remove(folder_.path() / "upper jaw.png");
-    EXPECT_THAT(leftOut(), HasSubstr("no picture \"upper jaw.png\""));
+    EXPECT_THAT(leftOut(), HasSubstr("\"upper jaw.png\": it is not beside"));
     write("scan.mtl", "newmtl arch\nmap_Kd damaged.jpg\n");
     write("damaged.jpg", "");
     EXPECT_THAT(leftOut(), HasSubstr("this picture is damaged"));
     write("scan.mtl", "newmtl arch\nmap_Kd ../upper.png\n");
-    EXPECT_THAT(leftOut(), HasSubstr("no picture"));
+    EXPECT_THAT(leftOut(), HasSubstr("it is not beside"));
     write("scan.mtl", "newmtl arch\nmap_Kd /etc/passwd\n");
-    EXPECT_THAT(leftOut(), HasSubstr("no picture"));
+    EXPECT_THAT(leftOut(), HasSubstr("it is not beside"));
     write("t.obj", obj("vt 0 1\nvt 1 1\nvt 0 0\nvt 1 0\n", "../scan.mtl"));
-    EXPECT_THAT(leftOut(), HasSubstr("there is no"));
+    EXPECT_THAT(leftOut(), HasSubstr("it is not beside"));
     write("t.obj", obj("vt 0 1\nvt 1 1\nvt 0 0\nvt 1 0\n", "gone.mtl"));
     EXPECT_THAT(leftOut(), HasSubstr("gone.mtl"));
     write("scan.mtl", "newmtl arch\nKd 1 0 0\n");
@@ -249,6 +249,28 @@ TEST_F(Textured, WhatIsNotThereIsToldOnceAndTheSurfaceIsRead) {
     ReadNotes notes;
     EXPECT_THAT(fromText(obj(), &notes).colours, IsEmpty());
     EXPECT_THAT(notes, testing::Contains(HasSubstr("beside the mesh"))) << "from memory there is no folder";
+}
+
+TEST_F(Textured, ALinkThatLeadsOutOfTheFolderIsNotFollowed) {
+    namespace fs = std::filesystem;
+    const test::TemporaryFolder elsewhere;
+    for (const char* name : {"upper jaw.png", "scan.mtl"}) {
+        fs::rename(folder_.path() / name, elsewhere.path() / name);
+        fs::create_symlink(elsewhere.path() / name, folder_.path() / name);
+        EXPECT_THAT(leftOut(),
+                    testing::AllOf(HasSubstr(name), HasSubstr("a link that leads out of the mesh's folder")));
+        fs::remove(folder_.path() / name);
+        fs::rename(elsewhere.path() / name, folder_.path() / name);
+    }
+    fs::create_directory_symlink(elsewhere.path(), folder_.path() / "pictures");
+    fs::rename(folder_.path() / "upper jaw.png", elsewhere.path() / "upper jaw.png");
+    write("scan.mtl", "newmtl arch\nmap_Kd pictures/upper jaw.png\n");
+    EXPECT_THAT(leftOut(), HasSubstr("leads out"));
+    // One that stays within is a name like any other.
+    fs::rename(elsewhere.path() / "upper jaw.png", folder_.path() / "of another name.png");
+    fs::create_symlink("of another name.png", folder_.path() / "upper jaw.png");
+    write("scan.mtl", "newmtl arch\nmap_Kd upper jaw.png\n");
+    EXPECT_EQ(read().colours.size(), 5u);
 }
 
 TEST_F(Textured, PlacesThatAreNotThereAreToldAndTheSurfaceIsRead) {

@@ -5,10 +5,12 @@
 #include <gtest/gtest.h>
 #include <zip.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "handpiece/model/case/large_package.h"
 #include "support/random.h"
 
 namespace handpiece::cases::package_test {
@@ -86,6 +88,25 @@ TEST_F(PackageTest, NamesThatLeadElsewhereAreRefused) {
     zipOf({{std::string(300, 'x'), "2"}});
     EXPECT_THAT(errorOf(), HasSubstr("too long"));
     EXPECT_EQ(fs::exists(folder().parent_path() / "evil"), false);
+}
+
+// No library writes such a zip: it is made of one with two names.
+TEST_F(PackageTest, ANameThatStandsTwiceIsRefused) {
+    zipOf({{"case.toml", "format = 1"}, {"case.tomm", "format = 2"}});
+    std::vector<std::byte> zip = core::readFile(file());
+    const std::vector<std::byte> other = bytes("case.tomm");
+    int found = 0;
+    for (auto at = zip.begin(); (at = std::search(at, zip.end(), other.begin(), other.end())) != zip.end(); ++found)
+        at[8] = std::byte{'l'};
+    ASSERT_EQ(found, 2);  // before its content, and in the directory
+    core::writeFile(file(), zip);
+    EXPECT_THAT(errorOf(), HasSubstr("names an entry twice"));
+    try {
+        (void)LargePackage(file());
+        FAIL();
+    } catch (const core::Error& e) {
+        EXPECT_THAT(e.what(), HasSubstr("names \"case.toml\" twice"));
+    }
 }
 
 TEST_F(PackageTest, LinksDevicesAndEncryptedFilesAreRefused) {

@@ -473,6 +473,59 @@ TEST_F(Formats, NiftiSwappedLeftHandedAndBroken) {
     EXPECT_THAT(error("c.nii", bytes(h)), HasSubstr("colours"));
 }
 
+TEST_F(Formats, LabelsAreReadAsWhatTheyAre) {
+    std::string values(10 * 9 * 8, '\0');
+    for (std::size_t i = 0; i < values.size(); ++i)
+        values[i] = static_cast<char>(i % 7 == 0 ? 46 : i % 5 == 0 ? 11 : 0);
+    const std::string head = "spacings: 0.3 0.3 0.3\nencoding: raw\n";
+    test::writeBytes(at("a.nrrd"), "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 10 9 8\n" + head + "\n" + values);
+    for (const bool isReversed : {false, true})
+        for (const std::uint64_t limit : {std::uint64_t{1} << 20, std::uint64_t{10 * 9 * 8 * 4}}) {
+            ReadSettings settings;
+            settings.reverseSlices = isReversed;
+            settings.limitBytes = limit;
+            settings.isLabels = true;
+            settings.regionMm = std::array{core::Vec3(0.3, 0, 0), core::Vec3(2.1, 2.4, 1.5)};
+            const Scan scan = readScan(at("a.nrrd"), settings);
+            const LabelScan labels = readLabels(at("a.nrrd"), settings);
+            EXPECT_EQ(labels.labels.values, toLabels(scan.volume, "a").values);
+            EXPECT_EQ(labels.labels.grid.originMm, scan.volume.grid.originMm);
+            EXPECT_EQ(labels.series.thumbnail, scan.series.thumbnail);
+        }
+    values[300] = static_cast<char>(200);
+    test::writeBytes(at("b.nrrd"), "NRRD0004\ntype: char\ndimension: 3\nsizes: 10 9 8\n" + head + "\n" + values);
+    EXPECT_THAT(errorOf([&] { (void)readLabels(at("b.nrrd")); }), AllOf(HasSubstr("b.nrrd"), HasSubstr("-56")));
+    // Slices that lie askew are put straight, and no number comes up that was not there.
+    test::writeBytes(at("c.nrrd"),
+                     "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 10 9 8\nspace: left-posterior-superior\n"
+                     "space directions: (1,0,0) (0,1,0) (0.4,0.3,1)\nencoding: raw\n\n" +
+                         values);
+    const LabelScan straight = readLabels(at("c.nrrd"));
+    EXPECT_THAT(straight.series.notes, testing::Contains(HasSubstr("straightened")));
+    EXPECT_EQ(straight.labels.grid.size, (std::array{13, 12, 8}));
+    EXPECT_EQ(std::count(straight.labels.values.begin(), straight.labels.values.end(), 200), 1);
+    EXPECT_THAT(straight.labels.values, testing::Each(testing::AnyOf(0, 11, 46, 200)));
+}
+
+// Some kilobytes that claim millions of voxels, and have them: nothing is in them.
+TEST_F(Formats, APackedVolumeOfOneValueIsToldBeforeRoomIsMadeForIt) {
+    const std::string head =
+        "NRRD0004\ntype: short\ndimension: 3\nsizes: 400 400 250\nendian: little\nencoding: gzip\nspacings: 1 1 1\n\n";
+    std::string values(2 * 400 * 400 * 250, '\0');
+    for (const char value : {'\0', '\7'}) {
+        for (std::size_t i = 0; i < values.size(); i += 2)
+            values[i] = value;
+        EXPECT_THAT(error("a.nrrd", head + zipped(values, true)),
+                    AllOf(HasSubstr("a.nrrd"), HasSubstr("all its voxels have the same value")));
+    }
+    values.resize(values.size() - 1);
+    EXPECT_THAT(error("a.nrrd", head + zipped(values, true)), HasSubstr("ends before the last value"));
+    values += '\1';
+    const Volume v = read("a.nrrd", head + zipped(values, true)).volume;
+    EXPECT_EQ(v.values.front(), 7.0f);
+    EXPECT_EQ(v.values.back(), 256.0f + 7.0f);
+}
+
 TEST_F(Formats, RawByItsDescription) {
     const std::string text = "file = \"t.raw\"\nsize = [4, 3, 2]\ntype = \"uint16\"\nspacing_mm = [0.1, 0.2, 0.3]\n";
     test::writeBytes(at("t.raw"), numbers(small<std::uint16_t>(), true));

@@ -44,20 +44,49 @@ core::Progress listenerOf(const ScanProgress& progress, ScanStage stage) {
     return [progress, stage](double fraction) { return progress(stage, fraction); };
 }
 
+/// Labels, and what they mean.
+ReadLabels keyed(volume::Labels labels, const volume::Series& series, const ScanJob& job) {
+    const std::string where = job.source.filename().string();
+    segmentation::LabelKey key;
+    if (!job.labelOrder.empty()) {
+        for (std::uint8_t& v : labels.values)
+            if (v < job.labelOrder.size()) v = job.labelOrder[v];
+        key = segmentation::labelKeyOf(labels, {}, segmentation::LabelNumbers::tissues, where);
+    } else {
+        key = segmentation::labelKeyOf(labels, series.labelNames, job.labelNumbers, where);
+        using What = segmentation::LabelMeaning::What;
+        if (!key.isMouth)
+            for (std::uint8_t& v : labels.values)
+                v = key.of[v].what == What::tissue ? static_cast<std::uint8_t>(key.of[v].number) : std::uint8_t{0};
+    }
+    if (!job.isLabels) key.notes.insert(key.notes.begin(), "its numbers are labels of teeth, not grey values");
+    return {std::make_shared<const volume::Labels>(std::move(labels)),
+            std::make_shared<const segmentation::LabelKey>(std::move(key))};
+}
+
 void read(ScanResult& result, const core::Progress& progress) {
     const ScanJob& job = result.job;
     if (job.source.empty()) throw core::Error("no scan is named", "scan", "give a file, a folder, a ZIP or a DICOMDIR");
     const double share = job.grey.empty() ? 0.9 : 0.5;
-    volume::Scan scan = volume::readScan(job.source, readSettings(job), core::part(progress, 0.0, share));
+    const core::Progress reading = core::part(progress, 0.0, share);
     result.grey.reset();
     result.labels.reset();
     result.labelKey.reset();
-    if (const auto labels = readLabels(scan, job)) {
+    volume::Scan scan;
+    std::optional<ReadLabels> labels;
+    if (job.isLabels) {
+        volume::LabelScan read = volume::readLabels(job.source, readSettings(job), reading);
+        scan = {{read.labels.grid, {}}, std::move(read.series)};
+        labels = keyed(std::move(read.labels), scan.series, job);
+    } else {
+        scan = volume::readScan(job.source, readSettings(job), reading);
+        labels = readLabels(scan, job);
+        // The labels are all that is needed: a scan of numbers is four times their size.
+        if (labels) std::vector<float>().swap(scan.volume.values);
+    }
+    if (labels) {
         result.labels = labels->labels;
         result.labelKey = labels->key;
-        // The labels are all that is needed: a scan of numbers is four times their size.
-        scan.volume.values.clear();
-        scan.volume.values.shrink_to_fit();
     }
     result.scan = std::make_shared<const volume::Scan>(std::move(scan));
     if (!job.grey.empty()) {
@@ -332,22 +361,7 @@ std::optional<ReadLabels> readLabels(const volume::Scan& scan, const ScanJob& jo
                 .as("labels-unsaid", {std::to_string(numbers)});
         return std::nullopt;
     }
-    volume::Labels labels = volume::toLabels(scan.volume, where);
-    segmentation::LabelKey key;
-    if (!job.labelOrder.empty()) {
-        for (std::uint8_t& v : labels.values)
-            if (v < job.labelOrder.size()) v = job.labelOrder[v];
-        key = segmentation::labelKeyOf(labels, {}, segmentation::LabelNumbers::tissues, where);
-    } else {
-        key = segmentation::labelKeyOf(labels, scan.series.labelNames, job.labelNumbers, where);
-        using What = segmentation::LabelMeaning::What;
-        if (!key.isMouth)
-            for (std::uint8_t& v : labels.values)
-                v = key.of[v].what == What::tissue ? static_cast<std::uint8_t>(key.of[v].number) : std::uint8_t{0};
-    }
-    if (!job.isLabels) key.notes.insert(key.notes.begin(), "its numbers are labels of teeth, not grey values");
-    return ReadLabels{std::make_shared<const volume::Labels>(std::move(labels)),
-                      std::make_shared<const segmentation::LabelKey>(std::move(key))};
+    return keyed(volume::toLabels(scan.volume, where), scan.series, job);
 }
 
 ScanResult runScanJob(const ScanJob& job, const ScanProgress& progress, const ScanResult* before, ScanStage last) {

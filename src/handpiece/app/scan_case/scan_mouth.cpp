@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 #include "handpiece/app/scan_case/scan_scenery.h"
 #include "handpiece/base/core/error.h"
@@ -93,14 +94,84 @@ const LabelledTooth& chosen(ScanResult& result, const std::vector<LabelledTooth>
     return *found;
 }
 
+/// What is told of teeth, by their numbers.
+using NotesOfTeeth = std::vector<std::pair<int, std::string>>;
+
+/// A text's numbers, and what stands before each and behind the last ("mm3" has none).
+struct Numbered {
+    std::vector<std::string> words{{}}, numbers;
+};
+Numbered numbered(const std::string& text) {
+    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
+    Numbered parts;
+    for (std::size_t at = 0; at < text.size();) {
+        std::size_t end = at;
+        if (at == 0 || text[at - 1] == ' ' || text[at - 1] == '(')
+            while (end < text.size() && (isDigit(text[end]) || (text[end] == '.' && end > at)))
+                ++end;
+        if (end == at) {
+            parts.words.back() += text[at++];
+            continue;
+        }
+        parts.numbers.push_back(text.substr(at, end - at));
+        parts.words.emplace_back();
+        at = end;
+    }
+    return parts;
+}
+
+double valueOf(const std::string& number) {
+    double value = 0.0;
+    std::from_chars(number.data(), number.data() + number.size(), value);
+    return value;
+}
+
+/// What is told of several teeth in the same words is one note, with its numbers from the least to the greatest.
+std::vector<std::string> folded(const NotesOfTeeth& notes) {
+    struct Alike {
+        std::vector<std::string> words;
+        std::vector<std::pair<std::string, std::string>> ranges;
+        std::vector<int> teeth;
+    };
+    std::vector<Alike> all;
+    for (const auto& [fdi, text] : notes) {
+        Numbered parts = numbered(text);
+        auto alike = std::find_if(all.begin(), all.end(), [&](const Alike& a) { return a.words == parts.words; });
+        if (alike == all.end()) {
+            alike = all.insert(all.end(), {std::move(parts.words), {}, {}});
+            for (const std::string& number : parts.numbers)
+                alike->ranges.emplace_back(number, number);
+        }
+        for (std::size_t i = 0; i < parts.numbers.size(); ++i) {
+            auto& [least, most] = alike->ranges[i];
+            const double number = valueOf(parts.numbers[i]);
+            if (number < valueOf(least)) least = parts.numbers[i];
+            if (number > valueOf(most)) most = parts.numbers[i];
+        }
+        alike->teeth.push_back(fdi);
+    }
+    std::vector<std::string> told;
+    for (const Alike& alike : all) {
+        std::string text = alike.words.front();
+        for (std::size_t i = 0; i < alike.ranges.size(); ++i) {
+            const auto& [least, most] = alike.ranges[i];
+            text += (least == most ? least : least + " to " + most) + alike.words[i + 1];
+        }
+        told.push_back(alike.teeth.size() == 1
+                           ? fmt::format("{}: {}", alike.teeth.front(), text)
+                           : fmt::format("{} ({} teeth: {})", text, alike.teeth.size(), listOf(alike.teeth)));
+    }
+    return told;
+}
+
 /// One of the others, or the one that is worked on.
 segmentation::Region regionOf(const ScanResult& result, const LabelledTooth& tooth,
-                              const segmentation::Settings& settings, std::vector<std::string>& notes,
+                              const segmentation::Settings& settings, NotesOfTeeth& notes,
                               const core::Progress& progress) {
     const segmentation::ToothAlone alone = segmentation::alone(*result.labels, *result.labelKey, tooth);
     if (alone.pieces > 1 && alone.leftOutMm3 >= kSpeckOfToothMm3)
-        notes.push_back(fmt::format("{} is in {} pieces: the largest is kept, {:.1f} mm3 are left out", tooth.fdi,
-                                    alone.pieces, alone.leftOutMm3));
+        notes.emplace_back(tooth.fdi, fmt::format("in {} pieces, of which the largest is kept: {:.1f} mm3 are left out",
+                                                  alone.pieces, alone.leftOutMm3));
     if (!result.grey) return segmentation::segmentLabels(alone.labels, settings, progress);
     return segmentation::segmentWithin(result.grey->volume, result.greyLevels, *result.labels, *result.labelKey, alone,
                                        settings, progress);
@@ -185,7 +256,12 @@ segmentation::Region segmentMouth(ScanResult& result, const core::Progress& prog
     }
     segmentation::Settings settings = result.job.segmentation;
     settings.toothAtMm.reset();
-    return regionOf(result, own, settings, result.toothNotes, core::part(progress, result.grey ? 0.3 : 0.0, 1.0));
+    NotesOfTeeth notes;
+    segmentation::Region region =
+        regionOf(result, own, settings, notes, core::part(progress, result.grey ? 0.3 : 0.0, 1.0));
+    for (std::string& note : folded(notes))
+        result.toothNotes.push_back(std::move(note));
+    return region;
 }
 
 void surfaceOthers(ScanResult& result, surfacing::Surfaces& own, const core::Progress& progress) {
@@ -198,16 +274,19 @@ void surfaceOthers(ScanResult& result, surfacing::Surfaces& own, const core::Pro
     settings.damp = result.job.segmentation.damp;
     settings.findCaries = result.job.segmentation.findCaries;
     std::vector<int> fdi;
+    NotesOfTeeth notes;
     std::vector<std::shared_ptr<surfacing::Surfaces>> made;
     for (std::size_t i = 0; i < teeth.size(); ++i) {
         core::report(progress, 0.8 * static_cast<double>(i) / static_cast<double>(teeth.size()));
         if (teeth[i].fdi == result.fdiNumber) continue;
-        const segmentation::Region region = regionOf(result, teeth[i], settings, result.mouthNotes, {});
+        const segmentation::Region region = regionOf(result, teeth[i], settings, notes, {});
         made.push_back(std::make_shared<surfacing::Surfaces>(surfacing::makeSurfaces(region, {result.job.smooth})));
         fdi.push_back(teeth[i].fdi);
-        for (const std::string& note : made.back()->notes)
-            result.mouthNotes.push_back(fmt::format("{}: {}", teeth[i].fdi, note));
+        for (const auto* told : {&region.notes, &made.back()->notes})
+            for (const std::string& note : *told)
+                notes.emplace_back(teeth[i].fdi, note);
     }
+    result.mouthNotes = folded(notes);
     std::vector<surfacing::Surfaces*> all{&own};
     for (const auto& surfaces : made)
         all.push_back(surfaces.get());

@@ -206,9 +206,16 @@ class VertexMerger {
 
 /// Cuts what is concave, and says what could not be.
 inline void settle(const Polygons& polygons, TriangleMesh& mesh, const Source& source) {
-    if (const std::size_t crossing = polygons.settle(mesh); crossing > 0)
-        source.note(fmt::format("{} {} itself: it is cut as a fan, which leaves its outline", crossing,
-                                crossing == 1 ? "polygon crosses" : "polygons cross"));
+    const Polygons::Left left = polygons.settle(mesh);
+    const auto tell = [&](std::size_t count, std::string_view one, std::string_view many) {
+        if (count > 0)
+            source.note(fmt::format("{} {}, which leaves {} outline", count, count == 1 ? one : many,
+                                    count == 1 ? "its" : "their"));
+    };
+    tell(left.crossing, "polygon crosses itself: it is cut as a fan",
+         "polygons cross themselves: they are cut as fans");
+    tell(left.tangled, "polygon is too intricate to be cut along its edges (export triangles): it is cut as a fan",
+         "polygons are too intricate to be cut along their edges (export triangles): they are cut as fans");
 }
 
 }  // namespace handpiece::geometry::formats

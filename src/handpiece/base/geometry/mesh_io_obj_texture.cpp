@@ -7,6 +7,7 @@
 #include <map>
 
 #include "handpiece/base/core/file.h"
+#include "handpiece/base/core/leads_out.h"
 #include "handpiece/base/geometry/texture.h"
 
 namespace handpiece::geometry::formats {
@@ -43,14 +44,18 @@ std::string_view fileOf(std::string_view rest) {
     return rest;
 }
 
-/// Beside the mesh, never outside of its folder; empty for any other.
+/// Beside the mesh, never outside of its folder. Throws core::Error, of which the problem is told, where there is none
+/// or it leads out.
 fs::path beside(const fs::path& folder, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     const fs::path file(name);
     const bool escapes = name.empty() || name.find('\0') != std::string::npos || file.is_absolute() ||
                          file.has_root_name() ||
                          std::any_of(file.begin(), file.end(), [](const fs::path& step) { return step == ".."; });
-    return escapes ? fs::path() : folder / file;
+    if (escapes || !core::isThere(folder / file)) throw core::Error("it is not beside the mesh", name);
+    if (core::leadsOut(folder, folder / file))
+        throw core::Error("it is a link that leads out of the mesh's folder", name);
+    return folder / file;
 }
 
 /// Material to the file of its picture.
@@ -164,11 +169,8 @@ VertexColours ObjTexture::colours(const Source& source, std::size_t vertices) co
     if (source.folder.empty()) return leftOut("they lie in files beside the mesh");
     Pictures pictures;
     for (const std::string& library : libraries_) {
-        const fs::path file = beside(source.folder, library);
-        if (file.empty() || !core::isThere(file))
-            return leftOut(fmt::format("there is no {} beside the mesh", formats::quoted(std::string_view(library))));
         try {
-            const std::vector<std::byte> bytes = core::readFile(file, kMaxLibraryBytes);
+            const std::vector<std::byte> bytes = core::readFile(beside(source.folder, library), kMaxLibraryBytes);
             readLibrary({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, pictures);
         } catch (const core::Error& e) {
             return leftOut(fmt::format("{}: {}", formats::quoted(std::string_view(library)), e.problem()));
@@ -187,12 +189,8 @@ VertexColours ObjTexture::colours(const Source& source, std::size_t vertices) co
     for (std::uint32_t m = 0; m < materials_.size(); ++m) {
         const auto named = pictures.find(materials_[m]);
         if (named == pictures.end()) continue;
-        const fs::path file = beside(source.folder, named->second);
-        if (file.empty() || !core::isThere(file))
-            return leftOut(fmt::format("there is no picture {} beside the mesh",
-                                       formats::quoted(std::string_view(named->second))));
         try {
-            const std::optional<Picture> picture = readPicture(file);
+            const std::optional<Picture> picture = readPicture(beside(source.folder, named->second));
             if (!picture) return leftOut("this program reads no pictures");
             for (std::size_t v = 0; v < at_.size(); ++v) {
                 if (at_[v].place == kNone || at_[v].material != m) continue;

@@ -174,7 +174,7 @@ class BaseMaker {
         mesh_.triangles.insert(mesh_.triangles.end(), kept.begin(), kept.end());
         formats::Polygons polygon;
         polygon.add(mesh_.triangles, corners);
-        const bool isWhole = polygon.settle(mesh_) == 0;
+        const bool isWhole = polygon.settle(mesh_).count() == 0;
         for (std::uint32_t i = 0; i < count; ++i) {
             const std::uint32_t j = i + 1 == count ? 0 : i + 1;
             mesh_.triangles.push_back({border[i], border[j], first + j});

@@ -118,7 +118,9 @@ LargePackage::LargePackage(const fs::path& file) : where_(file.string()) {
             (stat.valid & ZIP_STAT_SIZE) == 0)
             throw core::Error(fmt::format("its file {} is damaged", i + 1), where_, "copy the file again")
                 .as("not-a-package", {where_});
-        files_[stat.name] = stat.size;
+        if (!files_.try_emplace(stat.name, stat.size).second)
+            throw core::Error(fmt::format("it names \"{}\" twice", stat.name), where_, "get it from where it was made")
+                .as("not-a-package", {stat.name});
     }
 }
 LargePackage::~LargePackage() = default;

@@ -23,7 +23,8 @@ namespace handpiece::cases {
 void writeLargePackage(const std::filesystem::path& file, const PackageFiles& small,
                        const std::map<std::string, std::filesystem::path>& onDisk, const core::Progress& progress = {});
 
-/// One that is read. Throws core::Error "not-a-package" for what is damaged or no zip, with the name in it.
+/// One that is read. Throws core::Error "not-a-package" for what is damaged, names an entry twice or is no zip, with
+/// the name in it.
 class LargePackage {
   public:
     explicit LargePackage(const std::filesystem::path& file);

@@ -169,6 +169,10 @@ PackageFiles readPackage(std::span<const std::byte> zip, const std::string& wher
 
 namespace {
 
+core::Error namesTwice(std::string_view entry, const std::string& where) {
+    return core::Error(fmt::format("it names {} twice", entry), where, "get it from where it was made");
+}
+
 PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, const PackageLimits& limits,
                     const std::function<bool(const std::string& name)>& wanted) {
     zip_error_t error;
@@ -176,6 +180,10 @@ PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, co
     Source source(zip_source_buffer_create(zip.data(), zip.size(), 0, &error));
     if (!source) throw core::Error(messageOf(error), where);
     const Archive archive(zip_open_from_source(source.get(), ZIP_RDONLY | ZIP_CHECKCONS, &error));
+    if (!archive && zip_error_code_zip(&error) == ZIP_ER_EXISTS) {
+        zip_error_fini(&error);
+        throw namesTwice("an entry", where);
+    }
     if (!archive)
         throw core::Error(fmt::format("this is no .handpiece file or zip, or a damaged one: {}", messageOf(error)),
                           where, "copy the file again")
@@ -184,9 +192,8 @@ PackageFiles unpack(std::span<const std::byte> zip, const std::string& where, co
     PackageFiles files;
     for (const Listed& listed : listOf(archive.get(), zip.size(), where, limits)) {
         const auto [place, isNew] = files.try_emplace(listed.name);
-        if (!isNew)
-            throw core::Error(fmt::format("\"{}\" stands in it twice", shown(listed.name)), where,
-                              "get it from where it was made");
+        // libzip compares names as they were written, before it takes them from one code page to another.
+        if (!isNew) throw namesTwice(fmt::format("\"{}\"", shown(listed.name)), where);
         if (!wanted || wanted(listed.name))
             place->second = readEntry(archive.get(), listed.index, listed.bytes, where, listed.name);
     }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <map>
 #include <set>
+#include <type_traits>
 
 #include "handpiece/base/core/parallel.h"
 #include "handpiece/base/core/portable_math.h"
@@ -79,7 +80,9 @@ Series describe(const Candidate& candidate, bool isReversed = false) {
     return series;
 }
 
-void reverseSlices(Volume& volume) {
+/// `Block`, here and below: Volume or Labels.
+template <class Block>
+void reverseSlices(Block& volume) {
     const Grid& grid = volume.grid;
     const std::size_t each = grid.index(0, 0, 1);
     for (int k = 0; 2 * k + 1 < grid.size[2]; ++k)
@@ -89,7 +92,8 @@ void reverseSlices(Volume& volume) {
 }
 
 /// Left-handed grids get their slices in the other order.
-void makeRightHanded(Volume& volume, core::Vec3& stepMm) {
+template <class Block>
+void makeRightHanded(Block& volume, core::Vec3& stepMm) {
     Grid& grid = volume.grid;
     if (grid.axes.determinant() > 0.0) return;
     reverseSlices(volume);
@@ -99,8 +103,11 @@ void makeRightHanded(Volume& volume, core::Vec3& stepMm) {
 }
 
 /// Slices that shift from one to the next are put square over each other; what was not scanned gets the lowest value.
-void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, const core::Progress& progress) {
-    Grid& grid = scan.volume.grid;
+/// Between labels there is nothing: of those around the nearest.
+template <class Block>
+void straighten(Block& volume, Series& series, const core::Vec3& stepMm, std::uint64_t limitBytes,
+                const core::Progress& progress) {
+    Grid& grid = volume.grid;
     if (stepMm.isZero() || grid.size[2] < 2) return;
     const core::Vec3 local = grid.axes.transpose() * stepMm;
     const core::Vec2 shift(local.x() / grid.spacingMm.x(), local.y() / grid.spacingMm.y());
@@ -119,8 +126,8 @@ void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, 
     }
     const std::uint64_t bytes = checkedBytes(to.size, where, limitBytes);
     to.originMm -= grid.axes.col(0) * grid.spacingMm.x() * first[0] + grid.axes.col(1) * grid.spacingMm.y() * first[1];
-    const float lowest = *std::min_element(scan.volume.values.begin(), scan.volume.values.end());
-    std::vector<float> values(bytes / sizeof(float), lowest);
+    decltype(volume.values) values(bytes / sizeof(float),
+                                   *std::min_element(volume.values.begin(), volume.values.end()));
     std::atomic<int> done{0};
     core::parallelFor(static_cast<std::size_t>(grid.size[2]), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t slice = begin; slice < end; ++slice) {
@@ -136,35 +143,40 @@ void straighten(Scan& scan, const core::Vec3& stepMm, std::uint64_t limitBytes, 
                     if (u < 0.0 || u > grid.size[0] - 1) continue;
                     const int i0 = static_cast<int>(std::floor(u)), i1 = std::min(i0 + 1, grid.size[0] - 1);
                     const float fi = static_cast<float>(u - i0);
-                    const auto& from = scan.volume.values;
-                    const float a = from[grid.index(i0, j0, k)] * (1 - fi) + from[grid.index(i1, j0, k)] * fi;
-                    const float b = from[grid.index(i0, j1, k)] * (1 - fi) + from[grid.index(i1, j1, k)] * fi;
-                    values[to.index(i, j, k)] = a * (1 - fj) + b * fj;
+                    const auto& from = volume.values;
+                    if constexpr (std::is_same_v<Block, Labels>) {
+                        values[to.index(i, j, k)] = from[grid.index(fi < 0.5f ? i0 : i1, fj < 0.5f ? j0 : j1, k)];
+                    } else {
+                        const float a = from[grid.index(i0, j0, k)] * (1 - fi) + from[grid.index(i1, j0, k)] * fi;
+                        const float b = from[grid.index(i0, j1, k)] * (1 - fi) + from[grid.index(i1, j1, k)] * fi;
+                        values[to.index(i, j, k)] = a * (1 - fj) + b * fj;
+                    }
                 }
             }
             core::report(progress, static_cast<double>(++done) / grid.size[2]);
         }
     });
-    scan.volume.grid = to;
-    scan.volume.values = std::move(values);
+    volume.grid = to;
+    volume.values = std::move(values);
     const double slope = core::atan2(core::hypot(local.x(), local.y()), std::abs(local.z())) * 180.0 / M_PI;
-    scan.series.notes.push_back(
-        fmt::format("the slices were tilted by {:.1f} degrees and have been straightened", slope));
+    series.notes.push_back(fmt::format("the slices were tilted by {:.1f} degrees and have been straightened", slope));
 }
 
 /// What is no number, or no grey value of any scanner, counts as nothing: all that comes after may add and square.
-std::size_t removeNonNumbers(std::vector<float>& values) {
-    std::atomic<std::size_t> count{0};
-    core::parallelFor(values.size(), 1 << 20, [&](std::size_t begin, std::size_t end) {
-        std::size_t mine = 0;
-        for (std::size_t i = begin; i < end; ++i)
-            if (!(std::abs(values[i]) <= kLargestValue)) {
-                values[i] = 0.0f;
-                ++mine;
-            }
-        count += mine;
-    });
-    return count;
+float numberOr0(float value, std::size_t& bad) {
+    if (std::abs(value) <= kLargestValue) return value;
+    ++bad;
+    return 0.0f;
+}
+
+std::uint8_t labelOf(float value, const std::string& where) {
+    // Programs that keep labels as floats write 11 through a slope now and then.
+    constexpr float kWhole = 1e-3f;
+    const float whole = std::round(value);
+    if (!(whole >= 0.0f && whole <= 255.0f && std::abs(value - whole) <= kWhole))
+        throw core::Error(fmt::format("it holds {}, which is no label (whole numbers 0 to 255)", value), where,
+                          "read it as a scan, or save the labels as 8-bit whole numbers");
+    return static_cast<std::uint8_t>(whole);
 }
 
 enum class Kind { other, dicom, dicomdir, picture, nrrd, metaImage, nifti, description, data };
@@ -479,7 +491,11 @@ std::vector<Series> findSeries(const std::filesystem::path& path, const core::Pr
     return out;
 }
 
-Scan load(const Candidate& candidate, const ReadSettings& settings, const core::Progress& progress) {
+namespace {
+
+template <class Block>
+void loadInto(Block& volume, Series& series, const Candidate& candidate, const ReadSettings& settings,
+              const core::Progress& progress) {
     Grid whole = candidate.grid;
     core::Vec3 step = candidate.stepMm;
     Window window{{}, whole.size, 1};
@@ -510,11 +526,10 @@ Scan load(const Candidate& candidate, const ReadSettings& settings, const core::
         window = windowOf(whole, step, *settings.regionMm, candidate.where);
         fit();
     }
-    Scan scan;
-    scan.series = describe(candidate, settings.reverseSlices);
-    scan.series.isSpacingKnown = true;
-    if (window.by > 1) scan.series.notes.push_back(shrinkingText(window.count, window.by, settings.limitBytes));
-    Grid& grid = scan.volume.grid;
+    series = describe(candidate, settings.reverseSlices);
+    series.isSpacingKnown = true;
+    if (window.by > 1) series.notes.push_back(shrinkingText(window.count, window.by, settings.limitBytes));
+    Grid& grid = volume.grid;
     grid = whole;
     grid.size = shrunk(window.count, window.by);
     grid.spacingMm *= window.by;
@@ -526,20 +541,43 @@ Scan load(const Candidate& candidate, const ReadSettings& settings, const core::
     Window inFile = window;
     // Which of the file's slices lie there, where they are numbered from the other end.
     if (settings.reverseSlices) inFile.first[2] = whole.size[2] - window.first[2] - grid.size[2] * window.by;
-    scan.volume.values.resize(grid.count());
-    readWindow(candidate, inFile, settings.isLabels, scan.volume.values.data(), core::part(progress, 0.0, 0.95));
-    if (settings.reverseSlices) reverseSlices(scan.volume);
-    if (const std::size_t bad = removeNonNumbers(scan.volume.values); bad > 0)
-        scan.series.notes.push_back(bad == 1 ? std::string("1 value is no number and was read as 0")
-                                             : fmt::format("{} values are no numbers and were read as 0", bad));
-    makeRightHanded(scan.volume, step);
-    straighten(scan, step, settings.limitBytes, core::part(progress, 0.95, 1.0));
-    scan.series.size = grid.size;
-    scan.series.slices = grid.size[2];
-    scan.series.spacingMm = grid.spacingMm;
-    makeThumbnail(scan.volume.values.data() + grid.index(0, 0, grid.size[2] / 2), grid.size[0], grid.size[1],
-                  scan.series);
+    volume.values.resize(grid.count());
+    std::atomic<std::size_t> bad{0};
+    const std::size_t each = grid.index(0, 0, 1);
+    readWindow(
+        candidate, inFile, settings.isLabels,
+        [&](int k, const float* slice) {
+            std::size_t mine = 0;
+            std::transform(slice, slice + each,
+                           volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, k)), [&](float value) {
+                               if constexpr (std::is_same_v<Block, Labels>)
+                                   return labelOf(numberOr0(value, mine), candidate.where);
+                               else
+                                   return numberOr0(value, mine);
+                           });
+            bad += mine;
+        },
+        core::part(progress, 0.0, 0.95));
+    if (settings.reverseSlices) reverseSlices(volume);
+    if (bad > 0)
+        series.notes.push_back(bad == 1 ? std::string("1 value is no number and was read as 0")
+                                        : fmt::format("{} values are no numbers and were read as 0", bad.load()));
+    makeRightHanded(volume, step);
+    straighten(volume, series, step, settings.limitBytes, core::part(progress, 0.95, 1.0));
+    series.size = grid.size;
+    series.slices = grid.size[2];
+    series.spacingMm = grid.spacingMm;
+    const auto middleSlice = volume.values.begin() + static_cast<std::ptrdiff_t>(grid.index(0, 0, grid.size[2] / 2));
+    const std::vector<float> shown(middleSlice, middleSlice + static_cast<std::ptrdiff_t>(grid.index(0, 0, 1)));
+    makeThumbnail(shown.data(), grid.size[0], grid.size[1], series);
     core::report(progress, 1.0);
+}
+
+}  // namespace
+
+Scan load(const Candidate& candidate, const ReadSettings& settings, const core::Progress& progress) {
+    Scan scan;
+    loadInto(scan.volume, scan.series, candidate, settings, progress);
     return scan;
 }
 
@@ -548,19 +586,21 @@ Scan readScan(const std::filesystem::path& path, const ReadSettings& settings, c
     return load(choose(found, settings, path.string()), settings, core::part(progress, 0.2, 1.0));
 }
 
+LabelScan readLabels(const std::filesystem::path& path, ReadSettings settings, const core::Progress& progress) {
+    settings.isLabels = true;
+    std::vector<Candidate> found = findCandidates(FileSet::open(path), core::part(progress, 0.0, 0.2));
+    LabelScan scan;
+    loadInto(scan.labels, scan.series, choose(found, settings, path.string()), settings,
+             core::part(progress, 0.2, 1.0));
+    return scan;
+}
+
 Labels toLabels(const Volume& volume, const std::string& where) {
     Labels labels;
     labels.grid = volume.grid;
     labels.values.resize(volume.values.size());
-    for (std::size_t i = 0; i < volume.values.size(); ++i) {
-        // Programs that keep labels as floats write 11 through a slope now and then.
-        constexpr float kWhole = 1e-3f;
-        const float v = volume.values[i], whole = std::round(v);
-        if (!(whole >= 0.0f && whole <= 255.0f && std::abs(v - whole) <= kWhole))
-            throw core::Error(fmt::format("it holds {}, which is no label (whole numbers 0 to 255)", v), where,
-                              "read it as a scan, or save the labels as 8-bit whole numbers");
-        labels.values[i] = static_cast<std::uint8_t>(whole);
-    }
+    std::transform(volume.values.begin(), volume.values.end(), labels.values.begin(),
+                   [&](float value) { return labelOf(value, where); });
     return labels;
 }
 

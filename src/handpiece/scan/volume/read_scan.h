@@ -66,6 +66,14 @@ struct Scan {
 [[nodiscard]] Scan readScan(const std::filesystem::path& path, const ReadSettings& settings = {},
                             const core::Progress& progress = {});
 
+struct LabelScan {
+    Labels labels;
+    Series series;
+};
+/// The same of labels, whole numbers 0..255 (as floats: within 0.001), in the quarter of the memory. Throws core::Error
+/// for any other.
+[[nodiscard]] LabelScan readLabels(const std::filesystem::path& path, ReadSettings settings = {},
+                                   const core::Progress& progress = {});
 /// A volume whose values are whole numbers 0..255 (as floats: within 0.001), as labels. Throws core::Error otherwise.
 [[nodiscard]] Labels toLabels(const Volume& volume, const std::string& where);
 

@@ -105,6 +105,23 @@ class Stream {
     std::vector<std::byte> packed_;
 };
 
+/// Bytes that are one value over and over, looked at piece by piece as far as they are.
+bool holdsOneValue(const Samples& samples, std::uint64_t bytes) {
+    const std::size_t each = bytesOf(samples.type);  // of which a piece has a whole number
+    Stream stream(samples, samples.skip);
+    std::vector<std::byte> piece(kChunkBytes), first(each);
+    for (std::uint64_t at = 0; at < bytes;) {
+        const auto part = static_cast<std::size_t>(std::min<std::uint64_t>(bytes - at, piece.size()));
+        stream.read(piece.data(), part);
+        if (at == 0) std::copy_n(piece.begin(), each, first.begin());
+        if (std::memcmp(piece.data(), first.data(), each) != 0 ||
+            std::memcmp(piece.data() + each, piece.data(), part - each) != 0)
+            return false;
+        at += part;
+    }
+    return true;
+}
+
 void readSlices(const Samples& samples, int first, int count, const SlicePlace& place, const core::Progress& progress) {
     const std::size_t each = bytesOf(samples.type), most = kChunkBytes / each;
     const std::uint64_t perSlice =
@@ -226,6 +243,19 @@ void setSamples(Candidate& candidate, Samples samples) {
             core::Error(fmt::format("its {} packed bytes cannot hold the {} that its header claims", have, needed),
                         where, "copy or save the file again");
         return;
+    }
+    // What packs as tightly as hardly anything does may hold nothing: that is told before room is made for it.
+    constexpr std::uint64_t kTightly = 500, kLarge = 1 << 26;
+    if (samples.isPacked && needed > kLarge && needed / kTightly > have) {
+        try {
+            if (holdsOneValue(samples, needed)) {
+                const std::string why = "all its voxels have the same value";
+                candidate.problem = core::Error(why, where, "choose the file that shows teeth").as("scan-empty", {why});
+            }
+        } catch (const core::Error& e) {
+            candidate.problem = e;
+        }
+        if (candidate.problem) return;
     }
     const std::uint64_t perSlice =
         static_cast<std::uint64_t>(samples.size[0]) * static_cast<std::uint64_t>(samples.size[1]);

@@ -126,44 +126,45 @@ Window windowOf(const Grid& grid, const core::Vec3& stepMm, const std::array<cor
     return window;
 }
 
-void readWindow(const Candidate& candidate, const Window& window, bool isLabels, float* values,
+void readWindow(const Candidate& candidate, const Window& window, bool isLabels, const TakeSlice& take,
                 const core::Progress& progress) {
     const Grid& whole = candidate.grid;
     const int first = window.first[2], made = window.count[2] / window.by;
-    const std::size_t each = whole.index(0, 0, 1);
+    const std::size_t each = whole.index(0, 0, 1), by = static_cast<std::size_t>(window.by);
     const std::size_t eachMade =
         static_cast<std::size_t>(window.count[0] / window.by) * static_cast<std::size_t>(window.count[1] / window.by);
-    if (window.isAll(whole) && candidate.load)
-        return candidate.load(
-            0, made, [&](int k) { return values + static_cast<std::size_t>(k) * each; }, progress);
+    // Slices of the file in, one of what is kept out.
+    struct Room {
+        std::vector<float> read, kept;
+    };
+    const auto room = [&] { return Room{std::vector<float>(each * by), {}}; };
+    const auto finish = [&](Room& r, int k) {
+        if (window.isAll(whole)) return take(k, r.read.data());
+        r.kept.resize(eachMade);
+        shrinkSlices(r.read.data(), whole, window, isLabels, r.kept.data());
+        take(k, r.kept.data());
+    };
     if (candidate.load) {
-        std::vector<float> some(each * static_cast<std::size_t>(window.by));
-        const auto finish = [&](int slice) {
-            shrinkSlices(some.data(), whole, window, isLabels, values + static_cast<std::size_t>(slice) * eachMade);
-        };
+        Room one = room();
         candidate.load(
             first, made * window.by,
             [&](int k) {
                 const int n = k - first;
-                if (n > 0 && n % window.by == 0) finish(n / window.by - 1);
-                return some.data() + static_cast<std::size_t>(n % window.by) * each;
+                if (n > 0 && n % window.by == 0) finish(one, n / window.by - 1);
+                return one.read.data() + static_cast<std::size_t>(n % window.by) * each;
             },
             progress);
-        finish(made - 1);
+        finish(one, made - 1);
         return;
     }
     std::atomic<int> done{0};
     core::parallelFor(static_cast<std::size_t>(made), 1, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> some(window.isAll(whole) ? 0 : each * static_cast<std::size_t>(window.by));
+        Room one = room();
         for (std::size_t k = begin; k < end; ++k) {
-            const int from = first + static_cast<int>(k) * window.by;
-            if (some.empty()) {
-                candidate.slice(from, values + k * each);
-            } else {
-                for (int n = 0; n < window.by; ++n)
-                    candidate.slice(from + n, some.data() + static_cast<std::size_t>(n) * each);
-                shrinkSlices(some.data(), whole, window, isLabels, values + k * eachMade);
-            }
+            for (int n = 0; n < window.by; ++n)
+                candidate.slice(first + static_cast<int>(k) * window.by + n,
+                                one.read.data() + static_cast<std::size_t>(n) * each);
+            finish(one, static_cast<int>(k));
             core::report(progress, static_cast<double>(++done) / made);
         }
     });

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <string>
 
 #include "handpiece/base/core/progress.h"
@@ -39,8 +40,10 @@ struct Window {
 /// The voxels of `grid` within a box of the scan's frame. Throws core::Error where there are none.
 [[nodiscard]] Window windowOf(const Grid& grid, const core::Vec3& stepMm, const std::array<core::Vec3, 2>& regionMm,
                               const std::string& where);
-/// Reads what the window keeps into `values`; slices in the file's order.
-void readWindow(const Candidate& candidate, const Window& window, bool isLabels, float* values,
+/// Takes slice `k` of those that are kept; from several threads at once.
+using TakeSlice = std::function<void(int k, const float* slice)>;
+/// Reads what the window keeps, slice by slice of the file.
+void readWindow(const Candidate& candidate, const Window& window, bool isLabels, const TakeSlice& take,
                 const core::Progress& progress);
 
 }  // namespace handpiece::volume

@@ -67,9 +67,10 @@ void main() {
 #ifdef SCANNED
         scannedHere = vec4(0.0);
 #endif
-        // What was cut through: scenery is filled with its own colour, a tooth shows its walls.
+        // What was cut through: scenery is filled with its own colour, gingiva and bone darker, another tooth in that
+        // of its surface; the tooth that is worked on shows its walls.
         if (kind == 6.0 || kind == 7.0 || kind == 8.0) {
-            surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + 1.0) / 65535.0);
+            surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + (kind == 8.0 ? 0.0 : 1.0)) / 65535.0);
             return;
         }
         k = 29.0;

@@ -182,6 +182,7 @@ struct Subject {
     std::shared_ptr<simulation::LiveTooth> live;  ///< null: a mesh alone
     geometry::ColouredMesh mesh;                  ///< that one
     std::vector<cases::Part> scenery, parts;
+    std::shared_ptr<const std::vector<cases::PlacedTooth>> others;
     std::shared_ptr<const instrument::Bur> bur;  ///< null: none is shown
     view::BurFinish finish = view::BurFinish::diamond;
     view::Moment moment;
@@ -193,6 +194,7 @@ void takeCase(Subject& subject, const cases::Case& toothCase, int hour) {
     subject.standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
+    subject.others = std::make_shared<const std::vector<cases::PlacedTooth>>(toothCase.others);
     subject.down = input::downInCase(toothCase);
     subject.bounds = subject.live->model().outer.bounds();
     if (hour == 0) return;
@@ -377,7 +379,10 @@ void picture(const PictureOptions& o) {
         subject.live->settle();
         renderer.updateBricks(subject.live->takeNews());
         renderer.setParts(subject.parts);
-        if (!o.noScenery) renderer.setScenery(subject.scenery);
+        if (!o.noScenery) {
+            renderer.setScenery(subject.scenery);
+            renderer.setOthers(subject.others);
+        }
         renderer.setGingivaCuts(subject.live->gingiva().all(), subject.down);
     } else {
         renderer.setMesh(subject.mesh.mesh, cases::Tissue::enamel, subject.mesh.colours);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -26,6 +27,7 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 
 /// Everything below a folder, files with their content.
 std::map<std::string, std::string> contents(const fs::path& folder) {
@@ -326,6 +328,22 @@ TEST_F(CaseTest, FillsInWhatMayBeLeftOut) {
     ASSERT_EQ(read.parts.size(), 1u);
     EXPECT_EQ(read.parts[0].name, "dentine");
     EXPECT_EQ(read.parts[0].priority, properties(Tissue::dentine).priority);
+}
+
+TEST_F(CaseTest, AFolderAboveACaseTellsWhichOneIs) {
+    const fs::path above = folder() / "above";
+    fs::create_directory(above);
+    const auto put = [&](const char* name) {
+        fs::create_directory(above / name);
+        std::ofstream(above / name / "case.toml") << "format = 1\n" << kPart;
+    };
+    put("mouth");
+    fs::create_directory(above / "empty");
+    EXPECT_THAT(readError(above), AllOf(HasSubstr("no case.toml"), HasSubstr((above / "mouth").string() + " is one"),
+                                        Not(HasSubstr("empty"))));
+    for (const char* name : {"a", "z", "b"})
+        put(name);
+    EXPECT_THAT(readError(above), HasSubstr(fmt::format("{0}/a, {0}/b, {0}/mouth, ...", above.string())));
 }
 
 TEST_F(CaseTest, TellsWhatIsWrongAndWhere) {

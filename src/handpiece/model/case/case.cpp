@@ -282,13 +282,32 @@ Case readCaseFiles(const CaseFiles& files) {
     return made;
 }
 
+namespace {
+
+/// What to name instead of a folder that is no case.
+std::string whereACaseLies(const fs::path& folder) {
+    constexpr std::size_t kMostNamed = 3;
+    std::vector<fs::path> cases;
+    std::error_code ec;
+    for (fs::directory_iterator it(folder, ec), end; !ec && it != end; it.increment(ec))
+        if (std::error_code none; fs::exists(it->path() / kCaseFile, none)) cases.push_back(it->path());
+    if (cases.empty()) return "name a case folder (handpiece make tooth writes one), a .handpiece file or a mesh file";
+    std::sort(cases.begin(), cases.end());
+    if (cases.size() == 1) return cases.front().string() + " is one: name that";
+    std::string names;
+    for (std::size_t i = 0; i < std::min(cases.size(), kMostNamed); ++i)
+        names += (i == 0 ? "" : ", ") + cases[i].string();
+    return fmt::format("name one in it: {}{}", names, cases.size() > kMostNamed ? ", ..." : "");
+}
+
+}  // namespace
+
 Case readCase(const fs::path& path) {
     std::error_code ec;
     if (fs::is_directory(path, ec)) {
         const CaseFiles files = filesInFolder(path);
         if (!files.has(kCaseFile))
-            throw core::Error(fmt::format("this folder has no {}", kCaseFile), path.string(),
-                              "name a case folder (handpiece make tooth writes one), a .handpiece file or a mesh file")
+            throw core::Error(fmt::format("this folder has no {}", kCaseFile), path.string(), whereACaseLies(path))
                 .as("not-a-case", {kCaseFile});
         return readCaseFiles(files);
     }

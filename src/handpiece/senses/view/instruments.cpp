@@ -20,7 +20,7 @@ constexpr float kShadowReachMm = 6.0f;
 constexpr double kShankRadiusMm = 0.8;  // ISO 1797 type 3, friction grip: 1.6 mm wide [R]
 constexpr double kBurEndMm = 19.0;      // where a friction-grip bur ends, of ISO 1797 type 3 [R]: in the head
 constexpr double kShankShadowMm = 3.5;  // what lies higher throws its shadow beyond the tooth
-constexpr float kSoftMm = 0.6f;         // beyond a shadow's core its edge darkens by less than a step
+constexpr float kSoftMm = 0.8f;         // beyond a shadow's core its edge darkens by less than a step
 constexpr float kNearMm = 1.6f;         // beyond that nearness darkens by less than a step
 /// What is seen through lies over a place this wide about the bur's tip; the crown of a molar is 11 mm wide [R].
 constexpr float kSiteMm = 8.0f;

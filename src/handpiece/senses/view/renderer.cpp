@@ -93,7 +93,9 @@ struct Renderer::State {
     Shaders shaders;
     Scene scene;
     Instruments instruments;
-    Section section;
+    Sections sections;
+    std::optional<Plane> othersPlane;  ///< of sections.others
+    std::uint64_t othersEpoch = 0;
     gl::Texture depthScale;
     double depthScaleMm = -1.0, deviationScaleMm = 0.0;
     gl::VertexArray none;
@@ -111,6 +113,7 @@ struct Renderer::State {
     State() : effects(makeEffects([this] { return instruments.headRadiusMm(); })) {}
 
     void renewDepthScale(const Look& look);
+    void renewSections(const Look& look);
     [[nodiscard]] bool isSmall(double mm, const Camera& from, const Viewport& size, const Look& look) const;
     Detail detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report);
     [[nodiscard]] LayerWants wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
@@ -141,6 +144,19 @@ void Renderer::State::renewDepthScale(const Look& look) {
         colours.insert(colours.end(), {c[0], c[1], c[2], 255});
     }
     depthScale.fill(kSteps, 1, GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, colours.data(), true);
+}
+
+void Renderer::State::renewSections(const Look& look) {
+    if (othersPlane == look.cutAway && othersEpoch == scene.epoch()) return;
+    othersPlane = look.cutAway;
+    othersEpoch = scene.epoch();
+    sections.others.clear();
+    if (!look.cutAway) return;
+    for (auto& [tooth, face] : scene.othersCutBy(*look.cutAway)) {
+        sections.others.emplace_back();
+        sections.others.back().first = tooth;
+        sections.others.back().second.set(std::move(face));
+    }
 }
 
 Detail Renderer::State::detailFor(const Camera& to, const Viewport& size, const Look& look, FrameReport& report) {
@@ -185,8 +201,8 @@ bool Renderer::State::isSmall(double mm, const Camera& from, const Viewport& siz
 LayerWants Renderer::State::wantsFor(const Eye& eye, const Viewport& size, const Look& look, const Lighting& lighting,
                                      Detail detail) const {
     LayerWants wants{eye, size, look, lighting, detail, 0};
-    if (look.cutAway && section.serial != 0 && samePlane(*look.cutAway, section.face.plane))
-        wants.sectionSerial = section.serial;
+    if (look.cutAway && sections.own.serial != 0 && samePlane(*look.cutAway, sections.own.face.plane))
+        wants.sectionSerial = sections.own.serial;
     return wants;
 }
 
@@ -245,7 +261,7 @@ const gl::Texture& Renderer::State::drawReflection(const Eye& eye, const Viewpor
         if (-n.dot(lighting.lamp) <= 0.0f) also.lamp = lighting.lamp;
     }
     report.triangles +=
-        mirror.layer.update(shaders, scene, section, depthScale, wantsFor(eye, size, seen, also, detail)).triangles;
+        mirror.layer.update(shaders, scene, sections, depthScale, wantsFor(eye, size, seen, also, detail)).triangles;
     copy(mirror.layer.framebuffer(), mirror.composed, whole, GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glViewport(0, 0, size.width, size.height);
     const PixelRect shadow = instruments.shadowRect(eye, size, look, moment, lighting).common(whole);
@@ -265,7 +281,7 @@ void Renderer::State::drawEye(EyeTarget& target, const Camera& from, const Eye& 
     const Lighting lighting = lightingOf(from);
     target.allocate(size);
     const ToothLayer::Drawn drawn =
-        target.layer.update(shaders, scene, section, depthScale, wantsFor(eye, size, look, lighting, detail),
+        target.layer.update(shaders, scene, sections, depthScale, wantsFor(eye, size, look, lighting, detail),
                             responsive ? ToothLayer::Haste::refined : ToothLayer::Haste::whole);
     report.triangles += drawn.triangles;
     report.toothRedrawn = report.toothRedrawn || drawn.all;
@@ -371,7 +387,7 @@ bool Renderer::State::drawSmall(const Camera& from, const Viewport& size, const 
         const LayerWants wants = wantsFor(eyeOf(from, size), size, look, lightingOf(from), Detail::full);
         if (left.layer.isComplete(scene, wants)) return false;
         report.triangles +=
-            left.layer.update(shaders, scene, section, depthScale, wants, ToothLayer::Haste::strips).triangles;
+            left.layer.update(shaders, scene, sections, depthScale, wants, ToothLayer::Haste::strips).triangles;
         if (left.layer.isComplete()) return false;
         detail = Detail::coarse;
         report.refining = true;
@@ -456,6 +472,11 @@ void Renderer::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue,
     state_->glass.set({});
 }
 
+void Renderer::setOthers(std::shared_ptr<const std::vector<cases::PlacedTooth>> others) {
+    state_->context.makeCurrent();
+    state_->scene.setOthers(std::move(others));
+}
+
 void Renderer::setScenery(std::span<const cases::Part> parts) {
     state_->context.makeCurrent();
     state_->scene.setScenery(parts);
@@ -497,15 +518,7 @@ void Renderer::setSectionFace(SectionFace face) {
         !(face.mmPerPixel > 0.0))
         throw core::Error("a section's face has no size, or not one tissue a pixel", "section face",
                           "give width x height tissues and a positive size of a pixel");
-    Section& section = state_->section;
-    constexpr std::uint8_t kHalfPixel = 16;
-    std::vector<std::array<std::uint8_t, 4>> texels(pixels);
-    for (std::size_t i = 0; i < pixels; ++i)
-        texels[i] = {face.tissue[i], face.away.empty() ? kHalfPixel : face.away[i][0],
-                     face.away.empty() ? kHalfPixel : face.away[i][1], 0};
-    section.tissues.fill(face.width, face.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
-    section.face = std::move(face);
-    ++section.serial;
+    state_->sections.own.set(std::move(face));
 }
 
 FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const Look& look, const Moment& moment,
@@ -517,6 +530,7 @@ FrameReport Renderer::draw(const Camera& camera, const Viewport& viewport, const
     FrameReport report;
     const double begin = nowMs();
     s.renewDepthScale(look);
+    s.renewSections(look);
     report.bleeding = s.scene.bleed(moment.timeS);
     const Detail detail = s.detailFor(camera, viewport, look, report);
     const std::uint64_t drawnBefore = s.left.number;

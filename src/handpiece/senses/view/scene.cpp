@@ -9,6 +9,7 @@
 #include "handpiece/model/tooth/state_delta.h"
 #include "handpiece/senses/view/mesh_pieces.h"
 #include "handpiece/senses/view/simplify.h"
+#include "handpiece/senses/view/slice.h"
 
 namespace handpiece::view {
 namespace {
@@ -19,6 +20,7 @@ constexpr double kCreaseRad = 0.9, kPieceTriangles = 200.0;
 constexpr double kCrownCentreMm = 3.0, kCrownMm = 7.0;  // under a crown's top: a first molar's is 7.5 mm high [R]
 constexpr double kBeforeProximalMm = 0.05, kOverOcclusalMm = 4.0;
 constexpr float kPatchMm = 2.0f;
+constexpr double kSectionPixelMm = 0.05;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
 /// Of an adjacent tooth nothing else is known than its surface: how high each of its vertices lies in the crown goes
@@ -235,6 +237,22 @@ void Scene::setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, co
     add(mesh_, mesh, tissue, colours);
     hasScannedBricks_ = !colours.empty();
     measure();
+}
+
+void Scene::setOthers(std::shared_ptr<const std::vector<cases::PlacedTooth>> others) {
+    others_ = std::move(others);
+    changeAll();
+}
+
+std::vector<std::pair<std::uint16_t, SectionFace>> Scene::othersCutBy(const Plane& plane) const {
+    std::vector<std::pair<std::uint16_t, SectionFace>> cut;
+    // Those in bricks may be cut otherwise too: what is left of them is not known here.
+    for (std::size_t i = 0; others_ != nullptr && i < others_->size(); ++i) {
+        const auto number = static_cast<std::uint16_t>(i + 1);
+        if (teethInBricks_.contains(number)) continue;
+        if (auto face = sliceOf((*others_)[i], plane, kSectionPixelMm)) cut.emplace_back(number, *std::move(face));
+    }
+    return cut;
 }
 
 void Scene::setScenery(std::span<const cases::Part> parts) {

@@ -12,6 +12,7 @@
 #include <set>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "handpiece/base/geometry/triangle_mesh.h"
@@ -19,6 +20,7 @@
 #include "handpiece/senses/surface/brick_update.h"
 #include "handpiece/senses/view/mesh_pool.h"
 #include "handpiece/senses/view/over_dentine.h"
+#include "handpiece/senses/view/renderer.h"
 #include "handpiece/senses/view/wounds.h"
 
 namespace handpiece::view {
@@ -31,6 +33,7 @@ class Scene {
     void setTooth(const core::Box& bounds);
     void updateBricks(std::span<const surface::BrickUpdate> bricks, bool before);
     void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours);
+    void setOthers(std::shared_ptr<const std::vector<cases::PlacedTooth>> others);
     void setScenery(std::span<const cases::Part> parts);
     void setParts(std::span<const cases::Part> parts);
     void setGingivaCuts(std::vector<messages::GingivaCut> cuts, const core::Vec3& down);
@@ -41,6 +44,9 @@ class Scene {
     /// All that may be seen, scenery too.
     [[nodiscard]] const core::Box& bounds() const noexcept { return bounds_; }
     [[nodiscard]] const OverDentine& overDentine() const noexcept { return overDentine_; }
+    /// Sections of the other teeth whose tissues are known, that are whole and that the plane goes through, by their
+    /// numbers.
+    [[nodiscard]] std::vector<std::pair<std::uint16_t, SectionFace>> othersCutBy(const Plane& plane) const;
     /// Something of it has a scan's colours.
     [[nodiscard]] bool isScanned() const noexcept { return hasScannedBricks_ || hasScannedScenery_; }
     [[nodiscard]] bool hasCoarse() const noexcept { return coarseCount_ > 0; }
@@ -122,6 +128,7 @@ class Scene {
     bool sorted_ = true;
     std::vector<Static> mesh_, scenery_, parts_;
     OverDentine overDentine_;
+    std::shared_ptr<const std::vector<cases::PlacedTooth>> others_;
     Wounds wounds_;
     core::Box toothBounds_, bounds_;
     std::vector<Patch> patches_;

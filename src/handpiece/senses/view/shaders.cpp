@@ -67,9 +67,10 @@ void main() {
 #ifdef SCANNED
         scannedHere = vec4(0.0);
 #endif
-        // What was cut through: scenery is filled with its own colour, a tooth shows its walls.
+        // What was cut through: scenery is filled with its own colour, gingiva and bone darker, another tooth in that
+        // of its surface; the tooth that is worked on shows its walls.
         if (kind == 6.0 || kind == 7.0 || kind == 8.0) {
-            surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + 1.0) / 65535.0);
+            surface = vec4(0.5, 0.5, 0.5, (kind * 2048.0 + (kind == 8.0 ? 0.0 : 1.0)) / 65535.0);
             return;
         }
         k = 29.0;
@@ -544,7 +545,8 @@ void main() {
 }
 )";
 
-// Shadow and nearness of the bur, as two capsules: multiplied into what is there.
+// Shadow and nearness of the bur, as two capsules: multiplied into what is there. However deep it is as bright as
+// under clouds and as blue, so that enamel in it is grey: brown is what caries is.
 constexpr const char* kBurShadowFragment = R"(
 in vec2 uv;
 uniform sampler2D depth;
@@ -563,7 +565,7 @@ void main() {
     if (d >= 1.0) discard;
     vec4 h = toTooth * vec4(2.0 * uv - 1.0, 2.0 * d - 1.0, 1.0);
     vec3 p = h.xyz / h.w;
-    float light = 1.0, nearness = 1.0;
+    float light = 1.0;
     for (int i = 0; i < 2; ++i) {
         // Where the ray to the lamp comes nearest to the axis.
         vec3 ab = end[i] - begin[i], w = p - begin[i];
@@ -573,14 +575,13 @@ void main() {
         float t = max(0.0, dot(begin[i] + along * ab - p, lamp));
         along = clamp(dot(p + t * lamp - begin[i], ab) / aa, 0.0, 1.0);
         float away = length(p + t * lamp - begin[i] - along * ab) - radius[i];
-        float soft = 0.10 + 0.13 * t;
+        float soft = 0.16 + 0.17 * t;
         float dark = 1.0 - smoothstep(-soft, soft, away);
         light = min(light, 1.0 - dark * clamp(1.0 - t / reach, 0.0, 1.0) * smoothstep(0.0, 0.12, t));
     }
     float gap = max(0.0, distanceTo(p, begin[0], end[0]) - radius[0]);
-    nearness = 1.0 - 0.55 * exp(-gap * 3.2);
-    vec3 shade = mix(vec3(0.34, 0.31, 0.31), vec3(1.0), light) * nearness;
-    colour = vec4(shade, 1.0);
+    float nearness = 1.0 - 0.8 * exp(-gap * 3.2);
+    colour = vec4(mix(vec3(0.60, 0.64, 0.71), vec3(1.0), min(light, nearness)), 1.0);
 }
 )";
 

@@ -124,6 +124,17 @@ Vec4f planeOf(const std::optional<Plane>& plane) {
     return {-normal.x(), -normal.y(), -normal.z(), static_cast<float>(plane->offsetMm)};
 }
 
+void Section::set(SectionFace of) {
+    constexpr std::uint8_t kHalfPixel = 16;
+    std::vector<std::array<std::uint8_t, 4>> texels(of.tissue.size());
+    for (std::size_t i = 0; i < texels.size(); ++i)
+        texels[i] = {of.tissue[i], of.away.empty() ? kHalfPixel : of.away[i][0],
+                     of.away.empty() ? kHalfPixel : of.away[i][1], 0};
+    tissues.fill(of.width, of.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, texels.data());
+    face = std::move(of);
+    ++serial;
+}
+
 void ToothLayer::allocate(const Viewport& viewport) {
     const int w = viewport.width, h = viewport.height, w2 = (w + 1) / 2, h2 = (h + 1) / 2;
     if (colour_.width() == w && colour_.height() == h) return;
@@ -152,7 +163,7 @@ bool ToothLayer::isComplete(const Scene& scene, const LayerWants& wants) const {
     return isComplete() && epoch_ == scene.epoch() && same(*drawn_, wants);
 }
 
-ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Section& section,
+ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Sections& sections,
                                      const gl::Texture& depthScale, const LayerWants& wants, Haste haste) {
     allocate(wants.viewport);
     const PixelRect whole{0, 0, wants.viewport.width, wants.viewport.height};
@@ -197,19 +208,19 @@ ToothLayer::Drawn ToothLayer::update(Shaders& shaders, Scene& scene, const Secti
     glFrontFace(wants.eye.mirrored ? GL_CCW : GL_CW);
     glDisable(GL_BLEND);
     if (shadows && anew) result.triangles += drawShadowMap(shaders, scene, wants);
-    if (!changed.isEmpty()) redraw(shaders, scene, section, depthScale, wants, changed, closeBy, result);
-    if (!strip.isEmpty()) redraw(shaders, scene, section, depthScale, wants, strip, false, result);
+    if (!changed.isEmpty()) redraw(shaders, scene, sections, depthScale, wants, changed, closeBy, result);
+    if (!strip.isEmpty()) redraw(shaders, scene, sections, depthScale, wants, strip, false, result);
     if (result.all) result.rect = whole;
     return result;
 }
 
-void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Section& section, const gl::Texture& depthScale,
+void ToothLayer::redraw(Shaders& shaders, Scene& scene, const Sections& sections, const gl::Texture& depthScale,
                         const LayerWants& wants, const PixelRect& changed, bool closeBy, Drawn& drawn) {
     const PixelRect whole{0, 0, wants.viewport.width, wants.viewport.height};
     glDepthFunc(GL_LESS);
     glDepthMask(GL_TRUE);
     glViewport(0, 0, wants.viewport.width, wants.viewport.height);
-    drawn.triangles += drawSurface(shaders, scene, section, wants, changed);
+    drawn.triangles += drawSurface(shaders, scene, sections, wants, changed);
 
     // Occlusion reaches as far as its radius where the scene is nearest.
     const core::Box& bounds = scene.bounds();
@@ -245,7 +256,7 @@ bool ToothLayer::drawsScanned(const Scene& scene, const LayerWants& wants) {
     return true;
 }
 
-std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Section& section, const LayerWants& wants,
+std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sections& sections, const LayerWants& wants,
                                     const PixelRect& rect) {
     const Look& look = wants.look;
     geometry_.bind();
@@ -290,27 +301,34 @@ std::size_t ToothLayer::drawSurface(Shaders& shaders, Scene& scene, const Sectio
     triangles += draw(visible.around, out.plane ? out.plane : wants.eye.clip);
 
     if (isScanned) geometry_.bind();
-    if (wants.sectionSerial != 0 && look.cutAway) {
-        const SectionFace& face = section.face;
-        gl::Program& cap = shaders.cap;
-        cap.use();
-        cap.set("viewProjection", wants.eye.viewProjection());
-        cap.set("visibleTissues", visibleBits(look));
-        const auto step = static_cast<float>(face.mmPerPixel);
-        cap.set("origin", Vec3f(face.originMm.cast<float>()));
-        cap.set("uStep", Vec3f(step * face.uAxis.cast<float>()));
-        cap.set("vStep", Vec3f(step * face.vAxis.cast<float>()));
-        cap.set("size", Vec2f(static_cast<float>(face.width), static_cast<float>(face.height)));
-        cap.set("mmPerPixel", step);
-        cap.set("grid", look.sectionGrid ? 1 : 0);
-        cap.set("gridOrigin", Vec2f(static_cast<float>(face.uAxis.dot(face.originMm)),
-                                    static_cast<float>(face.vAxis.dot(face.originMm))));
-        cap.set("tissues", section.tissues, 0);
-        none_.bind();
-        glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-        triangles += 2;
-    }
+    if (!look.cutAway) return triangles;
+    if (wants.sectionSerial != 0) triangles += drawSection(shaders, sections.own, wants);
+    if (look.visible[static_cast<std::size_t>(cases::Tissue::neighbour)])
+        for (const auto& [tooth, section] : sections.others)
+            if (!out.teeth.contains(tooth)) triangles += drawSection(shaders, section, wants);
     return triangles;
+}
+
+std::size_t ToothLayer::drawSection(Shaders& shaders, const Section& section, const LayerWants& wants) {
+    const Look& look = wants.look;
+    const SectionFace& face = section.face;
+    gl::Program& cap = shaders.cap;
+    cap.use();
+    cap.set("viewProjection", wants.eye.viewProjection());
+    cap.set("visibleTissues", visibleBits(look));
+    const auto step = static_cast<float>(face.mmPerPixel);
+    cap.set("origin", Vec3f(face.originMm.cast<float>()));
+    cap.set("uStep", Vec3f(step * face.uAxis.cast<float>()));
+    cap.set("vStep", Vec3f(step * face.vAxis.cast<float>()));
+    cap.set("size", Vec2f(static_cast<float>(face.width), static_cast<float>(face.height)));
+    cap.set("mmPerPixel", step);
+    cap.set("grid", look.sectionGrid ? 1 : 0);
+    cap.set("gridOrigin", Vec2f(static_cast<float>(face.uAxis.dot(face.originMm)),
+                                static_cast<float>(face.vAxis.dot(face.originMm))));
+    cap.set("tissues", section.tissues, 0);
+    none_.bind();
+    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+    return 2;
 }
 
 void ToothLayer::drawOcclusion(Shaders& shaders, const LayerWants& wants, const PixelRect& half, int mostPixels) {

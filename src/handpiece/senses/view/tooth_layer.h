@@ -5,7 +5,9 @@
 
 #include <array>
 #include <cstdint>
+#include <list>
 #include <optional>
+#include <utility>
 
 #include "handpiece/senses/view/scene.h"
 #include "handpiece/senses/view/shaders.h"
@@ -34,6 +36,13 @@ struct Section {
     SectionFace face;
     gl::Texture tissues;
     std::uint64_t serial = 0;
+
+    void set(SectionFace of);
+};
+/// Of the tooth that is worked on, and of others by their numbers: these in the plane that is drawn.
+struct Sections {
+    Section own;
+    std::list<std::pair<std::uint16_t, Section>> others;
 };
 
 struct LayerWants {
@@ -63,7 +72,7 @@ class ToothLayer {
         strips,   ///< a strip a call, of whatever view: not to be shown before isComplete()
     };
     /// Brings the picture up to date, or nearer to it.
-    Drawn update(Shaders& shaders, Scene& scene, const Section& section, const gl::Texture& depthScale,
+    Drawn update(Shaders& shaders, Scene& scene, const Sections& sections, const gl::Texture& depthScale,
                  const LayerWants& wants, Haste haste = Haste::whole);
     /// All of it is drawn, as wanted; bricks may have changed since.
     [[nodiscard]] bool isComplete(const Scene& scene, const LayerWants& wants) const;
@@ -81,10 +90,11 @@ class ToothLayer {
 
   private:
     void allocate(const Viewport& viewport);
-    void redraw(Shaders& shaders, Scene& scene, const Section& section, const gl::Texture& depthScale,
+    void redraw(Shaders& shaders, Scene& scene, const Sections& sections, const gl::Texture& depthScale,
                 const LayerWants& wants, const PixelRect& changed, bool closeBy, Drawn& drawn);
-    std::size_t drawSurface(Shaders& shaders, Scene& scene, const Section& section, const LayerWants& wants,
+    std::size_t drawSurface(Shaders& shaders, Scene& scene, const Sections& sections, const LayerWants& wants,
                             const PixelRect& rect);
+    std::size_t drawSection(Shaders& shaders, const Section& section, const LayerWants& wants);
     void drawOcclusion(Shaders& shaders, const LayerWants& wants, const PixelRect& half, int mostPixels);
     std::size_t drawShadowMap(Shaders& shaders, Scene& scene, const LayerWants& wants);
     void renewBackground(Shaders& shaders, const LayerWants& wants);

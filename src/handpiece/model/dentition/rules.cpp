@@ -158,8 +158,11 @@ void chamberAndCanals(Spec& spec, double ageYears) {
     const bool isMolar = spec.cusps.size() > 2;
     // The roof sinks and the floor rises with the years: the chamber grows lower as it grows narrower.
     spec.roofZ -= 0.8 * (1.0 - young), spec.floorZ += 0.8 * (1.0 - young);
-    const double halfX = (isMolar ? 0.25 : 0.19) * spec.sizes.mesiodistalCervix * young,
-                 halfY = 0.22 * spec.sizes.buccolingualCervix * young;
+    // Molars' walls are as thick all round at the cervix.
+    const Vec2 cervix(spec.sizes.mesiodistalCervix, spec.sizes.buccolingualCervix);
+    const double wall = 0.13 * cervix.sum();
+    const double halfX = (isMolar ? 0.5 * cervix.x() - wall : 0.19 * cervix.x()) * young,
+                 halfY = (isMolar ? 0.5 * cervix.y() - wall : 0.22 * cervix.y()) * young;
     // The outline of the cervix, smaller. Its walls are hollow: wide towards the horns and the orifices, narrow
     // between.
     const auto section = [&](double z, double share) -> Section {
@@ -223,7 +226,9 @@ void oneCavity(Spec& spec, double ageYears) {
     const Cavity& is = isIncisor ? kIncisor : isPremolar ? kPremolar : kCanine;
     const Root& r = spec.roots.front();
     const double end = 1.0 + 0.7 / r.apex.z();
-    const double wide = is.wide * spec.sizes.mesiodistalCervix * young,
+    // Slender teeth keep their dentine at the sides.
+    const double across = spec.sizes.mesiodistalCervix,
+                 wide = std::min(is.wide * across, std::max(0.5 * across - 1.35, 0.09 * across)) * young,
                  deep = is.deep * spec.sizes.buccolingualCervix * young;
     spec.roofZ *= 0.7 + 0.3 * young, spec.floorZ = end * r.apex.z();
     for (const auto& [t, share] : {std::pair{end, 0.0}, {0.75, 0.3}, {0.5, 0.5}, {0.25, 0.75}, {0.0, 1.0}}) {
@@ -240,9 +245,9 @@ void oneCavity(Spec& spec, double ageYears) {
         // One behind each mesial and distal lobe; they are the first to go.
         spec.roofRise.x() = 0.3 * roof.halfX;
         for (const double side : {1.0, -1.0}) {
-            const double x = side * 0.75 * roof.halfX;
+            const double x = side * 0.6 * roof.halfX;
             spec.horns.push_back(hornTo(side > 0.0 ? "mesial" : "distal", spec, Vec2(x, leans),
-                                        Vec3(1.6 * x, highest.y(), highest.z()),
+                                        Vec3(1.2 * x, highest.y(), highest.z()),
                                         (side > 0.0 ? 1.0 : 0.85) * young * young, 0.36 * young));
         }
         return;

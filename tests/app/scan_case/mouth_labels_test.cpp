@@ -320,8 +320,7 @@ TEST(MouthOfLabels, WhatIsOddIsTold) {
     const std::vector<std::string> notes = result.notes();
     EXPECT_THAT(notes, Contains(HasSubstr("82 is left out: its label has 3 voxels")));
     // What is told of both is told once.
-    EXPECT_THAT(notes, Contains("in 2 pieces, of which the largest is kept: 1.2 to 1.7 mm3 are left out (2 teeth: 83, "
-                                "85)"));
+    EXPECT_THAT(notes, Contains("83, 85: in several pieces, of which the largest is kept, 2.9 mm3 are left out"));
     EXPECT_THAT(notes, Contains(HasSubstr("cuts off 83")));
     EXPECT_THAT(notes, Contains(HasSubstr("counts as enamel")));
     EXPECT_EQ(result.cases.front().toothCase.others.size(), 2u);

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 
 #include "handpiece/app/scan_case/scan_scenery.h"
 #include "handpiece/base/core/error.h"
@@ -94,73 +93,32 @@ const LabelledTooth& chosen(ScanResult& result, const std::vector<LabelledTooth>
     return *found;
 }
 
-/// What is told of teeth, by their numbers.
-using NotesOfTeeth = std::vector<std::pair<int, std::string>>;
-
-/// A text's numbers, and what stands before each and behind the last ("mm3" has none).
-struct Numbered {
-    std::vector<std::string> words{{}}, numbers;
+/// What is told of a tooth.
+struct NoteOfTooth {
+    int fdi;
+    std::string text;
+    double leftOutMm3 = 0.0;
 };
-Numbered numbered(const std::string& text) {
-    const auto isDigit = [](char c) { return c >= '0' && c <= '9'; };
-    Numbered parts;
-    for (std::size_t at = 0; at < text.size();) {
-        std::size_t end = at;
-        if (at == 0 || text[at - 1] == ' ' || text[at - 1] == '(')
-            while (end < text.size() && (isDigit(text[end]) || (text[end] == '.' && end > at)))
-                ++end;
-        if (end == at) {
-            parts.words.back() += text[at++];
-            continue;
-        }
-        parts.numbers.push_back(text.substr(at, end - at));
-        parts.words.emplace_back();
-        at = end;
-    }
-    return parts;
-}
+using NotesOfTeeth = std::vector<NoteOfTooth>;
 
-double valueOf(const std::string& number) {
-    double value = 0.0;
-    std::from_chars(number.data(), number.data() + number.size(), value);
-    return value;
-}
-
-/// What is told of several teeth in the same words is one note, with its numbers from the least to the greatest.
+/// What is told of several teeth in the same words is one note.
 std::vector<std::string> folded(const NotesOfTeeth& notes) {
     struct Alike {
-        std::vector<std::string> words;
-        std::vector<std::pair<std::string, std::string>> ranges;
+        std::string text;
         std::vector<int> teeth;
+        double leftOutMm3;
     };
     std::vector<Alike> all;
-    for (const auto& [fdi, text] : notes) {
-        Numbered parts = numbered(text);
-        auto alike = std::find_if(all.begin(), all.end(), [&](const Alike& a) { return a.words == parts.words; });
-        if (alike == all.end()) {
-            alike = all.insert(all.end(), {std::move(parts.words), {}, {}});
-            for (const std::string& number : parts.numbers)
-                alike->ranges.emplace_back(number, number);
-        }
-        for (std::size_t i = 0; i < parts.numbers.size(); ++i) {
-            auto& [least, most] = alike->ranges[i];
-            const double number = valueOf(parts.numbers[i]);
-            if (number < valueOf(least)) least = parts.numbers[i];
-            if (number > valueOf(most)) most = parts.numbers[i];
-        }
-        alike->teeth.push_back(fdi);
+    for (const NoteOfTooth& note : notes) {
+        auto alike = std::find_if(all.begin(), all.end(), [&](const Alike& a) { return a.text == note.text; });
+        if (alike == all.end()) alike = all.insert(all.end(), {note.text, {}, 0.0});
+        alike->teeth.push_back(note.fdi);
+        alike->leftOutMm3 += note.leftOutMm3;
     }
     std::vector<std::string> told;
-    for (const Alike& alike : all) {
-        std::string text = alike.words.front();
-        for (std::size_t i = 0; i < alike.ranges.size(); ++i) {
-            const auto& [least, most] = alike.ranges[i];
-            text += (least == most ? least : least + " to " + most) + alike.words[i + 1];
-        }
-        told.push_back(alike.teeth.size() == 1
-                           ? fmt::format("{}: {}", alike.teeth.front(), text)
-                           : fmt::format("{} ({} teeth: {})", text, alike.teeth.size(), listOf(alike.teeth)));
-    }
+    for (const Alike& a : all)
+        told.push_back(fmt::format("{}: {}{}", listOf(a.teeth), a.text,
+                                   a.leftOutMm3 > 0.0 ? fmt::format(", {:.1f} mm3 are left out", a.leftOutMm3) : ""));
     return told;
 }
 
@@ -170,8 +128,7 @@ segmentation::Region regionOf(const ScanResult& result, const LabelledTooth& too
                               const core::Progress& progress) {
     const segmentation::ToothAlone alone = segmentation::alone(*result.labels, *result.labelKey, tooth);
     if (alone.pieces > 1 && alone.leftOutMm3 >= kSpeckOfToothMm3)
-        notes.emplace_back(tooth.fdi, fmt::format("in {} pieces, of which the largest is kept: {:.1f} mm3 are left out",
-                                                  alone.pieces, alone.leftOutMm3));
+        notes.push_back({tooth.fdi, "in several pieces, of which the largest is kept", alone.leftOutMm3});
     if (!result.grey) return segmentation::segmentLabels(alone.labels, settings, progress);
     return segmentation::segmentWithin(result.grey->volume, result.greyLevels, *result.labels, *result.labelKey, alone,
                                        settings, progress);
@@ -282,9 +239,10 @@ void surfaceOthers(ScanResult& result, surfacing::Surfaces& own, const core::Pro
         const segmentation::Region region = regionOf(result, teeth[i], settings, notes, {});
         made.push_back(std::make_shared<surfacing::Surfaces>(surfacing::makeSurfaces(region, {result.job.smooth})));
         fdi.push_back(teeth[i].fdi);
-        for (const auto* told : {&region.notes, &made.back()->notes})
-            for (const std::string& note : *told)
-                notes.emplace_back(teeth[i].fdi, note);
+        for (const std::string& note : region.notes)
+            notes.push_back({teeth[i].fdi, note});
+        for (const std::string& note : made.back()->notes)
+            notes.push_back({teeth[i].fdi, note});
     }
     result.mouthNotes = folded(notes);
     std::vector<surfacing::Surfaces*> all{&own};

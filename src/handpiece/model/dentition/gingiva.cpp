@@ -27,7 +27,7 @@ using geometry::TriangleMesh;
 constexpr double kIntoToothMm = 0.4;
 /// Its highest place lies so far inside; farther in it goes down again, or a bur that cuts just over the margin would
 /// press what nobody sees.
-constexpr double kHighestInsideMm = 0.15, kFallsInside = 1.5;
+constexpr double kHighestInsideMm = 0.25, kFallsInside = 1.5;
 constexpr double kThinnestSeptumMm = 0.4;  ///< between two roots; thinner bone is left out
 constexpr double kWidestSeptum = 2.1;
 constexpr double kThinnestGingivaMm = 0.7;  ///< over bone
@@ -61,10 +61,13 @@ double blend(double a, double b, double width, double cap) {
     return share > 0.0 ? smoothMin(a, b, width * share) : std::min(a, b);
 }
 
-/// A distance from a tooth as the margin of the gingiva takes it: it grows again deep inside.
+/// A distance from a tooth as the margin of the gingiva takes it: it grows again deep inside. Round where it turns, or
+/// the edge would be as jagged as it is sampled, up to where it is seen.
 double asMarginTakes(double distanceMm) {
-    return distanceMm > -kHighestInsideMm ? distanceMm
-                                          : -kHighestInsideMm - kFallsInside * (distanceMm + kHighestInsideMm);
+    constexpr double kBend = 0.5 / kHighestInsideMm, kRoundToMm = -kHighestInsideMm * (1.0 + kFallsInside);
+    const double bent = std::clamp(distanceMm, kRoundToMm, 0.0);
+    return distanceMm + kBend * bent * bent -
+           (distanceMm < kRoundToMm ? (1.0 + kFallsInside) * (distanceMm - bent) : 0.0);
 }
 
 class Arch {

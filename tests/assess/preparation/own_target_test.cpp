@@ -86,7 +86,7 @@ TEST_P(RecordedCylinder, HasItsClosedForm) {
     recipe.draw = by_ * Vec3::UnitZ();
     const Laid laid = layOn(block_, recipe);
     {  // Everywhere about it distances are right to a fifth of a voxel; at most one place in 200 is off by more (at
-       // 100 um one in 80: its margin is as coarse): what was laid flat moves the rim by a hundredth.
+       // 100 um one in 70: its margin is as coarse): what was laid flat moves the rim by a hundredth.
         std::mt19937_64 random(test::seed(1));
         int bad = 0;
         constexpr int kPlaces = 20000;
@@ -99,7 +99,7 @@ TEST_P(RecordedCylinder, HasItsClosedForm) {
             if (std::abs(found - d) > 0.2 * GetParam().first && ++bad < 10)
                 fmt::print("at {:.3f} {:.3f} {:.3f}: {:.4f} for {:.4f}\n", q.x(), q.y(), q.z(), found, d);
         }
-        EXPECT_LE(bad, kPlaces / (GetParam().first > 0.07 ? 80 : 200));
+        EXPECT_LE(bad, kPlaces / (GetParam().first > 0.07 ? 70 : 200));
     }
     {  // The teacher's own work is all of the target and nothing else.
         const zones::ZoneVolumes v = zones::zoneVolumes(*laid.zones, teacher);

@@ -190,19 +190,20 @@ struct Subject {
     std::unique_ptr<simulation::SessionPlayer> session;  ///< owns `live` where it came from there
 };
 
-void takeCase(Subject& subject, const cases::Case& toothCase, int hour) {
+void takeCase(Subject& subject, const cases::Case& toothCase, const PictureOptions& o) {
     subject.standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
-    subject.others = std::make_shared<const std::vector<cases::PlacedTooth>>(toothCase.others);
+    // A whole mouth's are some 100 MB: only a section shows their tissues.
+    if (!o.section.empty()) subject.others = std::make_shared<const std::vector<cases::PlacedTooth>>(toothCase.others);
     subject.down = input::downInCase(toothCase);
     subject.bounds = subject.live->model().outer.bounds();
-    if (hour == 0) return;
+    if (o.position == 0) return;
     const std::optional<core::Quat> head = input::headInCase(toothCase);
     if (!head)
         throw core::Error("where the head lies is not known: no tooth of the case has a number", "--position",
                           "give the tooth its FDI number in case.toml, or leave --position out");
-    subject.position = input::workingPosition(*head, toothCase.fdiNumber < 30, hour);
+    subject.position = input::workingPosition(*head, toothCase.fdiNumber < 30, o.position);
 }
 
 Subject openSession(const PictureOptions& o) {
@@ -228,7 +229,7 @@ Subject openSession(const PictureOptions& o) {
     subject.live = player.tooth();
     subject.bur = player.station().settings.bur;
     subject.finish = view::finishOf(*subject.bur, player.station().settings.cuttingParameters.name);
-    takeCase(subject, player.toothCase(), o.position);
+    takeCase(subject, player.toothCase(), o);
     view::Moment& m = subject.moment;
     m.timeS = s.timeS;
     m.burInTooth.positionMm = {s.proxyPositionMm[0], s.proxyPositionMm[1], s.proxyPositionMm[2]};
@@ -285,7 +286,7 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
     }
     subject.live = std::make_shared<simulation::LiveTooth>(station, state, core::part(bar.listener(), 0.7, 1.0));
     bar.finish();
-    takeCase(subject, toothCase, o.position);
+    takeCase(subject, toothCase, o);
     if (asked.bur) restBur(subject, station, *asked.bur);
     return subject;
 }

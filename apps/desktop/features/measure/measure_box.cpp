@@ -97,22 +97,22 @@ MeasureBox::MeasureBox(QWidget* parent) : QWidget(parent) {
     calliperButton_->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Fixed);
     column->addWidget(calliperButton_);
 
-    loadRow_ = new QWidget(this);
-    auto* load = new QHBoxLayout(loadRow_);
+    auto* loadRow = new QWidget(this);
+    auto* load = new QHBoxLayout(loadRow);
     load->setContentsMargins(0, 0, 0, 0);
-    loadCaption_ = new QLabel(loadRow_);
-    load_ = named(new QSlider(Qt::Horizontal, loadRow_), "loadSlider", tr("How hard to press"),
+    loadCaption_ = new QLabel(loadRow);
+    load_ = named(new QSlider(Qt::Horizontal, loadRow), "loadSlider", tr("How hard to press"),
                   tr("How hard the left button presses (Shift and the wheel)"));
     load_->setRange(qRound(kMinLoadN / kLoadStepN), qRound(kMaxLoadN / kLoadStepN));
     load_->setPageStep(5);
-    loadValue_ = new QLabel(loadRow_);
+    loadValue_ = new QLabel(loadRow);
     loadValue_->setObjectName("loadReadout");
     loadValue_->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
     loadCaption_->setBuddy(load_);
     load->addWidget(loadCaption_);
     load->addWidget(load_, 1);
     load->addWidget(loadValue_);
-    column->addWidget(loadRow_);
+    column->addWidget(loadRow);
 
     auto* stopRow = new QHBoxLayout;
     stopOn_ = named(new QCheckBox(tr("Stop at a depth of"), this), "depthStopOn", tr("Depth stop"),

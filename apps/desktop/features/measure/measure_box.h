@@ -78,7 +78,6 @@ class MeasureBox : public QWidget {
     QLabel *depth_, *calliper_, *left_, *leftWords_, *depthCaption_, *calliperCaption_, *leftCaption_;
     TrafficLight* light_;
     QToolButton* calliperButton_;
-    QWidget* loadRow_;
     QLabel *loadCaption_, *loadValue_;
     QSlider* load_;
     PassRow* passRow_;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numbers>
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/hash.h"
@@ -492,6 +493,129 @@ TEST(ToothForm, EnamelAndPulpAreWhereTheyAre) {
         }
         fmt::print(", dentine over the pulp at least {:.2f} mm\n", thinnest);
     }
+}
+
+/// The highest of the pulp at a place seen from above, and the lowest from there down to where the pulp ends.
+struct Heights {
+    double roof, floor;
+};
+Heights pulpAt(const ToothForm& form, double x, double y) {
+    constexpr double kStepMm = 0.01;
+    double z = 8.0;
+    while (z > -3.0 && form.pulp(Vec3(x, y, z)) > 0.0)
+        z -= kStepMm;
+    const double roof = z;
+    while (z > -20.0 && form.pulp(Vec3(x, y, z)) < 0.0)
+        z -= kStepMm;
+    return {roof, z};
+}
+/// How wide the pulp is in a plane across the tooth: along x, along y, and its area.
+struct Across {
+    double x = 0.0, y = 0.0, areaMm2 = 0.0;
+};
+Across pulpAcross(const ToothForm& form, double z) {
+    constexpr double kStepMm = 0.05;
+    core::Box box;
+    Across across;
+    for (double x = -5.0; x < 5.0; x += kStepMm)
+        for (double y = -6.0; y < 6.0; y += kStepMm)
+            if (form.pulp(Vec3(x, y, z)) < 0.0) box.extend(Vec3(x, y, z)), across.areaMm2 += kStepMm * kStepMm;
+    across.x = box.size().x() + kStepMm, across.y = box.size().y() + kStepMm;
+    return across;
+}
+
+/// A pulp has the form of its tooth, smaller: a horn under each cusp that rises towards it, a roof that sags between
+/// horns, of molars the mesiobuccal one the highest; with the years all of them recede.
+TEST(ToothForm, PulpsRiseIntoHornsUnderTheCusps) {
+    for (const Published& t : kPublished)
+        for (const std::uint64_t seed : {0, 1, 3}) {
+            SCOPED_TRACE(testing::Message() << t.fdi << ", seed " << seed);
+            double before = 1e9;
+            for (const double age : {20.0, 46.0, 67.0}) {
+                if (age > 20.0 && seed != static_cast<std::uint64_t>(t.fdi % 2)) continue;
+                const ToothForm form(t.fdi, {seed, age});
+                const std::vector<Landmark> marks = form.landmarks(), horns = of(LandmarkKind::pulpHorn, marks);
+                ASSERT_EQ(horns.size(), t.cusps > 0 ? static_cast<std::size_t>(t.cusps) : 2u);
+                double highest = -1e9;
+                for (const Landmark& horn : horns)
+                    highest = std::max(highest, horn.pointsMm[0].z());
+                EXPECT_LT(highest, before) << age;
+                before = highest;
+                if (t.fdi % 10 >= 6) {
+                    EXPECT_EQ(named(LandmarkKind::pulpHorn, "mesiobuccal", marks).z(), highest);
+                }
+                for (std::size_t i = 0; i < horns.size(); ++i) {
+                    const Vec3& tip = horns[i].pointsMm[0];
+                    if (t.cusps > 1) {
+                        const Vec3 cusp = named(LandmarkKind::cuspTip, horns[i].name, marks);
+                        EXPECT_GT(tip.head<2>().normalized().dot(cusp.head<2>().normalized()), 0.8) << horns[i].name;
+                        EXPECT_GT(tip.z(), pulpAt(form, 0.0, 0.0).roof + 0.2) << horns[i].name;
+                    }
+                    for (std::size_t j = 0; j < i; ++j) {
+                        const Vec3 &other = horns[j].pointsMm[0], middle = 0.5 * (tip + other);
+                        EXPECT_LT(pulpAt(form, middle.x(), middle.y()).roof, std::min(tip.z(), other.z()) - 0.03)
+                            << horns[i].name << " " << horns[j].name << " " << age;
+                    }
+                }
+            }
+        }
+}
+
+/// The chamber of a molar follows the outline of the cervix (law of concentricity, Krasner and Rankow 2004 [recalled]:
+/// walls as thick all round), has a floor that bulges up between the orifices, and canals that open into it like
+/// funnels.
+TEST(ToothForm, ChambersFollowTheCervixAndOpenIntoCanals) {
+    for (const int fdi : {16, 17, 46, 47})
+        for (const std::uint64_t seed : {0, 1, 2, 3}) {
+            SCOPED_TRACE(testing::Message() << fdi << ", seed " << seed);
+            const ToothForm form(fdi, {seed, 20.0});
+            const Heights middle = pulpAt(form, 0.0, 0.0);
+            const double z = 0.5 * (middle.roof + middle.floor);
+            std::vector<double> walls;
+            for (int i = 0; i < 24; ++i) {
+                const double rad = 2.0 * std::numbers::pi * i / 24;
+                double inner = 0.0, outer = 0.0;
+                const auto at = [&](double r) { return Vec3(r * std::cos(rad), r * std::sin(rad), z); };
+                while (form.pulp(at(inner)) < 0.0)
+                    inner += 0.02;
+                while (form.outer(at(outer)) < 0.0)
+                    outer += 0.02;
+                walls.push_back(outer - inner);
+            }
+            const auto [thinnest, thickest] = std::minmax_element(walls.begin(), walls.end());
+            EXPECT_LT(*thickest, (fdi < 30 ? 1.6 : 1.3) * *thinnest);
+            Vec3 orifices = Vec3::Zero();
+            const std::vector<Landmark> marks = of(LandmarkKind::orifice, form.landmarks());
+            for (const Landmark& m : marks) {
+                orifices += m.pointsMm[0] / static_cast<double>(marks.size());
+                const Vec3 near = 0.6 * m.pointsMm[0];
+                EXPECT_LT(pulpAt(form, near.x(), near.y()).floor, middle.floor - 0.05) << m.name;
+            }
+            const double wide = pulpAcross(form, orifices.z() - 0.8).areaMm2,
+                         narrow = pulpAcross(form, orifices.z() - 3.0).areaMm2;
+            EXPECT_GT(wide, 1.45 * narrow);
+            fmt::print(
+                "{} seed {}: walls of the chamber {:.2f} to {:.2f} mm, canals {:.2f} mm2, 2.2 mm deeper {:.2f}\n", fdi,
+                seed, *thinnest, *thickest, wide, narrow);
+        }
+}
+
+/// Pulps of incisors widen towards the edge as they grow thin; of canines they end in one horn.
+TEST(ToothForm, PulpsOfIncisorsWidenTowardsTheEdge) {
+    for (const int fdi : {11, 12, 41, 42})
+        for (const double age : {20.0, 46.0, 67.0}) {
+            SCOPED_TRACE(testing::Message() << fdi << ", " << age);
+            const ToothForm form(fdi, {0, age});
+            const std::vector<Landmark> horns = of(LandmarkKind::pulpHorn, form.landmarks());
+            ASSERT_EQ(horns.size(), 2u);
+            const Vec3 middle = 0.5 * (horns[0].pointsMm[0] + horns[1].pointsMm[0]);
+            const double roof = pulpAt(form, middle.x(), middle.y()).roof;
+            const Across edge = pulpAcross(form, roof - 0.3), cervix = pulpAcross(form, 0.0);
+            EXPECT_GT(edge.x, 1.1 * cervix.x);
+            EXPECT_LT(edge.y, 0.7 * cervix.y);
+            fmt::print("{} at {}: pulp under the horns {:.2f} x {:.2f}, at the cervix {:.2f} x {:.2f} mm\n", fdi, age,
+                       edge.x, edge.y, cervix.x, cervix.y);
+        }
 }
 
 /// No tissue has a hole, whatever the seed and the age: where canals met again pulps had one.

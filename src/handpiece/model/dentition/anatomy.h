@@ -90,11 +90,12 @@ struct Canal {
     std::string name;
     std::vector<core::Vec3> points;  ///< from the orifice to the apical foramen
     double orificeRadius, apexRadius;
+    double funnel;  ///< how much wider it opens into the chamber
 };
 struct Horn {
     std::string name;
     core::Vec3 base, tip;
-    double baseRadius, tipRadius;
+    double baseRadius, tipRadius;  ///< it narrows the faster, the broader it is
 };
 
 /// A cross-section of a column at one height.
@@ -128,8 +129,10 @@ struct Spec {
     double rootBlend = 1.4;
     double enamelCusp = 2.0, enamelFossa = 0.75, enamelSide = 1.05;  ///< thicknesses
     std::vector<Section> chamber;
-    double roofZ = 0.8, floorZ = -1.0;     ///< of the chamber; with one root the roof alone
-    double pulpSpread = 0.0;               ///< how much wider it is towards an incisal edge
+    double roofZ = 0.8, floorZ = -1.0;  ///< of the chamber's middle; with one root the roof alone
+    /// How much higher the roof is at the walls of x and of y than in its middle, and how much lower the floor.
+    core::Vec2 roofRise = core::Vec2::Zero(), floorFall = core::Vec2::Zero();
+    bool edgeHorns = false;                ///< horns stand behind the lobes of an incisal edge
     std::vector<std::string> twoCanals{};  ///< roots with two
     std::vector<Horn> horns;
     std::vector<Canal> canals;

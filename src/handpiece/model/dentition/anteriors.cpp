@@ -76,7 +76,7 @@ void anterior(Spec& s, bool upper, int place) {
                 Vec2(0.49 * z.mesiodistalCervix, 0.49 * z.buccolingualCervix), 0.1, upper ? 0.0 : 0.14,
                 Vec2(0.82, 0.44)}};
     s.enamelCusp = canine ? 1.8 : 2.1, s.enamelSide = canine ? 0.85 : 0.75;
-    s.roofZ = 0.5 * top, s.pulpSpread = canine ? 0.0 : 0.4;
+    s.roofZ = (canine ? 0.42 : 0.34) * top, s.edgeHorns = !canine;
 }
 
 }  // namespace handpiece::dentition

@@ -81,7 +81,7 @@ void upperPremolar(Spec& s, int place, Draws& draws) {
     } else {
         s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.6, 0.1, -14.2), Vec2(2.5, 4.0), 0.3, 0.16,
                     Vec2(0.82, 0.48)}};
-        s.roofZ = 3.0;
+        s.roofZ = 2.6;
     }
     narrow(s);
 }
@@ -154,7 +154,7 @@ void lowerPremolar(Spec& s, int place, Draws& draws) {
         s.hollows.push_back({Vec3(1.8 * side, -3.6, 6.0), Vec3(1.1, 1.9, 2.6), 0.22});
     s.roots = {{"root", Vec2(0, 0), Vec3(0.1, 0.0, -7.0), Vec3(-0.7, 0.1, -s.sizes.root - 0.25), Vec2(2.5, 3.25), 0.2,
                 0.1, Vec2(0.82, 0.46)}};
-    s.roofZ = 3.0;
+    s.roofZ = 2.6;
     narrow(s);
 }
 

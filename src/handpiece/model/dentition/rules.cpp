@@ -136,24 +136,50 @@ double youth(double ageYears) {
     return std::clamp(1.0 - 0.009 * (ageYears - 25.0), 0.4, 1.1);
 }
 
+/// From the middle of a section of the chamber towards a place, this share of the way to the wall.
+Vec2 towards(const Section& in, const Vec2& to, double share) {
+    const Vec2 middle(in.cx, in.cy), way = to - middle;
+    const double xx = way.x() * way.x() / (in.halfX * in.halfX), yy = way.y() * way.y() / (in.halfY * in.halfY),
+                 sum = std::max(xx + yy, 1e-12);
+    return middle + share / std::sqrt(sum - in.square * xx * yy / sum) * way;
+}
+
+/// From the roof's edge straight towards a cusp or edge, ending so far over the middle of the roof; a horn runs out
+/// slender from a broad base.
+Horn hornTo(const std::string& name, const Spec& spec, const Vec2& base, const Vec3& cusp, double up, double radius) {
+    // Thin crowns leave little room: there it begins deep in the pulp, so that some of it always lies within.
+    const double tip = 0.15, under = spec.isEdge ? 1.2 : 0.2;
+    const Vec3 from(base.x(), base.y(), spec.roofZ - under);
+    return {name, from, between(from, cusp, (up + under - tip) / (cusp.z() - from.z())), radius, tip};
+}
+
 void chamberAndCanals(Spec& spec, double ageYears) {
     const double young = youth(ageYears);
+    const bool isMolar = spec.cusps.size() > 2;
     // The roof sinks and the floor rises with the years: the chamber grows lower as it grows narrower.
     spec.roofZ -= 0.8 * (1.0 - young), spec.floorZ += 0.8 * (1.0 - young);
-    const double halfX = 0.25 * spec.sizes.mesiodistalCervix * young,
-                 halfY = 0.22 * spec.sizes.buccolingualCervix * young;
-    // Its walls are hollow: wide towards the horns and the orifices, narrow between.
-    spec.chamber = {{spec.floorZ - 0.2, spec.centreX, 0.0, 0.95 * halfX, 0.95 * halfY, 0.3},
-                    {0.5 * (spec.floorZ + spec.roofZ), spec.centreX, 0.0, 0.9 * halfX, 0.92 * halfY, 0.25},
-                    {spec.roofZ + 0.2, spec.centreX, 0.0, 1.03 * halfX, 1.03 * halfY, 0.3}};
+    // Molars' walls are as thick all round at the cervix.
+    const Vec2 cervix(spec.sizes.mesiodistalCervix, spec.sizes.buccolingualCervix);
+    const double wall = 0.13 * cervix.sum();
+    const double halfX = (isMolar ? 0.5 * cervix.x() - wall : 0.19 * cervix.x()) * young,
+                 halfY = (isMolar ? 0.5 * cervix.y() - wall : 0.22 * cervix.y()) * young;
+    // The outline of the cervix, smaller. Its walls are hollow: wide towards the horns and the orifices, narrow
+    // between.
+    const auto section = [&](double z, double share) -> Section {
+        return {z, spec.centreX, 0.0, share * halfX, share * halfY, spec.cervixSquare};
+    };
+    spec.chamber = {section(spec.floorZ - 0.2, 0.95), section(0.5 * (spec.floorZ + spec.roofZ), 0.91),
+                    section(spec.roofZ + 0.2, 1.03)};
+    // Concave between horns, the floor convex between orifices; of a premolar, across the row of the two both are
+    // round.
+    spec.roofRise = {(isMolar ? 0.4 : -0.8) * halfX, 0.36 * halfY};
+    spec.floorFall = {isMolar ? 0.35 * young : -0.5 * halfX, 0.35 * young};
+    const Section &floor = spec.chamber.front(), &roof = spec.chamber.back();
     for (const Cusp& c : spec.cusps) {
-        // The mesiobuccal one is the highest.
-        const double up = (&c == &spec.cusps.front() ? 1.7 : 1.25) * young;
-        const Vec2 at(std::clamp(spec.centreX + 0.62 * (c.tip.x() - spec.centreX), spec.centreX - 0.85 * halfX,
-                                 spec.centreX + 0.85 * halfX),
-                      std::clamp(0.55 * c.tip.y(), -0.85 * halfY, 0.85 * halfY));
-        spec.horns.push_back({c.name, Vec3(0.8 * at.x(), 0.8 * at.y(), spec.roofZ - 0.6),
-                              Vec3(at.x(), at.y(), spec.roofZ + up - 0.15), 0.62 * young, 0.15});
+        // The mesiobuccal one is the highest, mesial ones are higher than distal ones.
+        const double up = (&c == &spec.cusps.front() ? 1.7 : 1.25 + 0.12 * c.tip.x()) * young;
+        spec.horns.push_back(
+            hornTo(c.name, spec, towards(roof, c.tip.head<2>(), 0.75), c.tip, up, (isMolar ? 0.8 : 0.65) * young));
     }
     for (const Root& r : spec.roots) {
         const bool isTwo = std::find(spec.twoCanals.begin(), spec.twoCanals.end(), r.name) != spec.twoCanals.end();
@@ -163,12 +189,14 @@ void chamberAndCanals(Spec& spec, double ageYears) {
             Vec2 top(std::clamp(r.cervix.x(), spec.centreX - 0.75 * halfX, spec.centreX + 0.75 * halfX),
                      std::clamp(r.cervix.y(), -0.8 * halfY, 0.8 * halfY));
             if (isTwo && std::abs(r.cervix.y()) < 0.5) top.y() = side * 0.7 * halfY;
+            top = towards(floor, top, 0.82);
             // MB2 opens 1.5 mm palatal of the first.
             if (isTwo && r.cervix.y() < -0.5 && side > 0.0) top.y() += 1.5;
             Canal canal{r.name,
                         {Vec3(top.x(), top.y(), spec.floorZ + 0.15)},
                         (isTwo ? 0.36 : 0.46) * young,
-                        0.13 + 0.05 * young};
+                        0.13 + 0.05 * young,
+                        0.2 * young};
             // MB2 and the distal root's second one are the smaller.
             if (isTwo) canal.name += side < 0.0 ? " buccal" : " lingual";
             if (isTwo && r.name == "mesiobuccal")
@@ -183,37 +211,53 @@ void chamberAndCanals(Spec& spec, double ageYears) {
     }
 }
 
+/// A single root's pulp: shares of the cervix that it has as half its width and depth there, and shares of these
+/// half-way up to the roof and at the roof [R].
+struct Cavity {
+    double wide, deep, halfwayWide, halfwayDeep, roofWide, roofDeep;
+};
+/// Towards an incisal edge wide and thin, as the crown is; a flame in canines; between two rows of cusps a ribbon.
+constexpr Cavity kIncisor{0.20, 0.19, 1.15, 0.70, 1.40, 0.30}, kCanine{0.20, 0.20, 0.85, 0.75, 0.50, 0.35},
+    kPremolar{0.20, 0.23, 0.95, 0.95, 0.90, 0.90};
+
 void oneCavity(Spec& spec, double ageYears) {
-    const double hornZ = spec.roofZ, spread = spec.pulpSpread;
     const double young = youth(ageYears);
+    const bool isIncisor = spec.edgeHorns, isPremolar = !spec.isEdge;
+    const Cavity& is = isIncisor ? kIncisor : isPremolar ? kPremolar : kCanine;
     const Root& r = spec.roots.front();
-    const double top = hornZ * (0.7 + 0.3 * young), end = 1.0 + 0.7 / r.apex.z();
-    const double wide = 0.24 * spec.sizes.mesiodistalCervix * young,
-                 deep = 0.25 * spec.sizes.buccolingualCervix * young;
-    spec.roofZ = top, spec.floorZ = end * r.apex.z();
+    const double end = 1.0 + 0.7 / r.apex.z();
+    // Slender teeth keep their dentine at the sides.
+    const double across = spec.sizes.mesiodistalCervix,
+                 wide = std::min(is.wide * across, std::max(0.5 * across - 1.35, 0.09 * across)) * young,
+                 deep = is.deep * spec.sizes.buccolingualCervix * young;
+    spec.roofZ *= 0.7 + 0.3 * young, spec.floorZ = end * r.apex.z();
     for (const auto& [t, share] : {std::pair{end, 0.0}, {0.75, 0.3}, {0.5, 0.5}, {0.25, 0.75}, {0.0, 1.0}}) {
         const Vec2 c = rootCentre(r, t);
         spec.chamber.push_back(
             {t * r.apex.z(), c.x(), c.y(), std::max(wide * share, 0.17), std::max(deep * share, 0.17), 0.2});
     }
-    // Towards the edge it is wide and thin, as the crown is.
-    spec.chamber.push_back(
-        {0.55 * top, 0.0, 0.3 * spec.cusps.front().tip.y(), wide * (0.8 + spread), 0.65 * deep, 0.2});
-    spec.chamber.push_back(
-        {top, 0.0, 0.6 * spec.cusps.front().tip.y(), wide * (0.5 + 1.2 * spread), 0.25 * deep + 0.1, 0.2});
-    for (const Cusp& c : spec.cusps) {
-        const Vec2 at = spec.isEdge ? Vec2(0.0, 0.6 * c.tip.y())
-                                    : Vec2(std::clamp(0.4 * c.tip.x(), -0.6 * wide, 0.6 * wide),
-                                           std::clamp(0.5 * c.tip.y(), -0.8 * deep, 0.8 * deep));
-        // Of incisors one behind each mesial and distal lobe.
-        for (const double x : spread > 0.0 ? std::vector<double>{0.8, -0.8} : std::vector<double>{0.0}) {
-            const double side = x * wide * (0.5 + 1.2 * spread);
-            const double up = (c.tip.z() / spec.cusps.front().tip.z() > 0.9 || spec.isEdge ? 0.75 : 0.3) * young;
-            spec.horns.push_back({spread > 0.0 ? x > 0.0 ? "mesial" : "distal" : c.name,
-                                  Vec3(at.x() + 0.8 * side, 0.7 * at.y(), 0.6 * top),
-                                  Vec3(at.x() + side, at.y(), top + up - 0.15 - (x < 0.0 ? 0.2 : 0.0)), 0.28 * young,
-                                  0.15});
+    const Vec3 highest = spec.cusps.front().tip;
+    const double leans = (isPremolar ? 0.1 : 0.6) * highest.y();
+    spec.chamber.push_back({0.5 * spec.roofZ, 0.0, 0.5 * leans, wide * is.halfwayWide, deep * is.halfwayDeep, 0.2});
+    spec.chamber.push_back({spec.roofZ, 0.0, leans, wide * is.roofWide, deep * is.roofDeep + 0.1, 0.2});
+    const Section& roof = spec.chamber.back();
+    if (isIncisor) {
+        // One behind each mesial and distal lobe; they are the first to go.
+        spec.roofRise.x() = 0.3 * roof.halfX;
+        for (const double side : {1.0, -1.0}) {
+            const double x = side * 0.6 * roof.halfX;
+            spec.horns.push_back(hornTo(side > 0.0 ? "mesial" : "distal", spec, Vec2(x, leans),
+                                        Vec3(1.2 * x, highest.y(), highest.z()),
+                                        (side > 0.0 ? 1.0 : 0.85) * young * young, 0.36 * young));
         }
+        return;
+    }
+    if (isPremolar) spec.roofRise = {-0.8 * roof.halfX, 0.3 * roof.halfY};
+    for (const Cusp& c : spec.cusps) {
+        // The lower a cusp, the less of a horn: hardly any under the lingual one of a first lower premolar.
+        const double up = 1.2 * std::clamp((c.tip.z() / highest.z() - 0.6) / 0.4, 0.3, 1.0) * young;
+        const Vec2 base = isPremolar ? towards(roof, c.tip.head<2>(), 0.72) : Vec2(0.0, leans);
+        spec.horns.push_back(hornTo(c.name, spec, base, c.tip, up, (isPremolar ? 0.48 : 0.5) * young));
     }
 }
 

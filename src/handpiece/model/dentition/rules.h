@@ -62,8 +62,9 @@ void occlusalSurface(Spec& spec, const OcclusalPlan& plan);
 /// Supplemental grooves: the developmental ones fork at the mesial and distal ends, and twigs leave them on their way;
 /// each fades out, some fork again.
 void supplementalGrooves(Spec& spec, const OcclusalPlan& plan, Draws& draws);
-/// The pulp, narrower with age. With several roots a chamber in the shape of the cervix with a horn under each cusp and
-/// canals down the middle of the roots; with one root one cavity, flat as the root is.
+/// The pulp, narrower with age. With several roots a chamber in the shape of the cervix, its roof drawn out into a horn
+/// under each cusp, and canals that open from it like funnels and run down the middle of the roots; with one root one
+/// cavity, flat as the root is.
 void addPulp(Spec& spec, double ageYears);
 /// Cusp tips wear flat.
 void wear(Spec& spec, double byMm);

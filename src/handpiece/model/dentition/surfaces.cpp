@@ -2,7 +2,9 @@
 #include "handpiece/model/dentition/surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/split_mix.h"
@@ -20,6 +22,8 @@ constexpr double kStepMm = 0.06, kStepHeightMm = 0.6;
 constexpr double kCervicalEnamelMm = 0.10;
 /// Dentine left everywhere over the pulp, in the crown and at the apex.
 constexpr double kCrownDentineMm = 1.0, kApicalDentineMm = 0.25;
+/// How round the chamber's edges are, how softly horns rise from its roof and how deep the canals' funnels reach.
+constexpr double kChamberRoundMm = 0.5, kHornBlendMm = 0.5, kFunnelMm = 2.0;
 /// Flanks of two crests meet in a valley as sharp as this [mm]; the ridges of the rim pass into each other softly.
 constexpr double kValleyMm = 0.10, kRimMm = 0.45;
 /// Incisal edges slope towards lingual.
@@ -41,15 +45,16 @@ double gauss(double t) {
     return core::exp(-0.5 * t * t);
 }
 
-/// Distance to a chain of balls whose radius runs evenly from the first to the last point.
-double chainValue(const std::vector<Vec3>& points, double from, double to, const Vec3& p) {
+/// Distance to a chain of balls; how large they are hangs on the share of the way and the place.
+template <class Radius>
+double chainValue(std::span<const Vec3> points, const Radius& radius, const Vec3& p) {
     double best = std::numeric_limits<double>::infinity();
     const auto pieces = static_cast<double>(points.size() - 1);
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const Vec3 d = points[i + 1] - points[i];
         const double t = std::clamp((p - points[i]).dot(d) / d.squaredNorm(), 0.0, 1.0);
-        const double radius = from + (static_cast<double>(i) + t) / pieces * (to - from);
-        best = std::min(best, (p - points[i] - t * d).norm() - radius);
+        const Vec3 at = points[i] + t * d;
+        best = std::min(best, (p - at).norm() - radius((static_cast<double>(i) + t) / pieces, at));
     }
     return best;
 }
@@ -171,14 +176,14 @@ double Profile::at(double height) const {
 Loft::Loft(Outlines outlines, Ends ends, double lean, double wedge, double skew)
     : outlines_(std::move(outlines)), ends_(ends), lean_(lean), wedge_(wedge), skew_(skew) {}
 
-Loft::Loft(const std::vector<Section>& s, Ends ends)
+Loft::Loft(const std::vector<Section>& s, Ends ends, double lean, double wedge, double skew)
     : Loft({profileOf(s, [](const Section& b) { return b.cx + b.halfX; }),
             profileOf(s, [](const Section& b) { return b.halfX - b.cx; }),
             profileOf(s, [](const Section& b) { return b.halfY - b.cy; }),
             profileOf(s, [](const Section& b) { return b.halfY + b.cy; }),
             profileOf(s, [](const Section& b) { return b.square; }),
             profileOf(s, [](const Section& b) { return b.waist; })},
-           ends) {}
+           ends, lean, wedge, skew) {}
 
 double Loft::value(const Vec3& p) const {
     const double m = outlines_.mesial.at(p.z()), d = outlines_.distal.at(p.z()), b = outlines_.buccal.at(p.z()),
@@ -306,13 +311,11 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     for (const Hollow& h : spec_.hollows)
         bumps_.push_back({h.centre, h.radii.cwiseInverse(), h.depth});
     if (spec_.uneven > 0.0) uneven_ = Unevenness(spec_.unevenSeed, bounds());
-    if (!spec_.chamber.empty()) {
-        // No box: roof and floor pass into the walls.
-        const double round = 0.42 * (spec_.roofZ - spec_.floorZ);
-        chamber_.emplace_back(spec_.chamber, spec_.roots.size() == 1
-                                                 ? Loft::Ends{spec_.floorZ + 0.4, 0.4, spec_.roofZ - 0.5, 0.5}
-                                                 : Loft::Ends{spec_.floorZ + round, round, spec_.roofZ - round, round});
-    }
+    // A single root's ends in its canal; with more a floor is cut across.
+    if (!spec_.chamber.empty())
+        chamber_.emplace_back(
+            spec_.chamber, spec_.roots.size() == 1 ? Loft::Ends{spec_.floorZ + 0.4, 0.4} : Loft::Ends{apexZ_, 1.0},
+            spec_.isEdge ? 0.0 : spec_.lean, spec_.isEdge ? 0.0 : spec_.wedge, spec_.isEdge ? 0.0 : spec_.skew);
     grind();
     measure();
 }
@@ -509,18 +512,34 @@ double Anatomy::enamel(const Vec3& p) const {
     return smoothMax(bodyValue - step(above) + grooveDepth(p), cap, 0.08);
 }
 
+double Anatomy::chamber(const Vec3& p) const {
+    // Between horns the roof is the lowest in its middle, and the floor bulges up between the orifices.
+    const Section& top = spec_.chamber.back();
+    const auto squared = [](double share) { return std::min(share * share, 1.3); };
+    const Vec2 out(squared((p.x() - top.cx) / top.halfX), squared((p.y() - top.cy) / top.halfY));
+    const double round = std::min(kChamberRoundMm, 0.5 * (spec_.roofZ - spec_.floorZ));
+    const double value = smoothMax(chamber_.front().value(p), p.z() - spec_.roofZ - out.dot(spec_.roofRise), round);
+    return spec_.roots.size() == 1 ? value : smoothMax(value, spec_.floorZ - out.dot(spec_.floorFall) - p.z(), round);
+}
+
 double Anatomy::pulp(const Vec3& p) const {
-    double cavity = std::numeric_limits<double>::infinity();
-    for (const Loft& c : chamber_)
-        cavity = c.value(p);
+    const double cavity = chamber_.empty() ? std::numeric_limits<double>::infinity() : chamber(p);
     // Canals flow into the chamber, not into each other: two of a root stay two.
     double value = cavity;
     for (const Canal& c : spec_.canals) {
-        const double canal = chainValue(c.points, c.orificeRadius, c.apexRadius, p);
+        const auto radius = [&](double share, const Vec3& at) {
+            const double opens = std::max(1.0 - (c.points.front().z() - at.z()) / kFunnelMm, 0.0);
+            return c.orificeRadius + share * (c.apexRadius - c.orificeRadius) + opens * opens * c.funnel;
+        };
+        const double canal = chainValue(c.points, radius, p);
         value = std::min(value, std::isfinite(cavity) ? smoothMin(cavity, canal, 0.5) : canal);
     }
-    for (const Horn& h : spec_.horns)
-        value = smoothMin(value, chainValue({h.base, h.tip}, h.baseRadius, h.tipRadius, p), 0.8);
+    for (const Horn& h : spec_.horns) {
+        const auto radius = [&](double share, const Vec3&) {
+            return h.tipRadius + (1.0 - share) * (1.0 - 0.4 * share) * (h.baseRadius - h.tipRadius);
+        };
+        value = smoothMin(value, chainValue(std::array{h.base, h.tip}, radius, p), kHornBlendMm);
+    }
     return smoothMax(
         value,
         core(p, body(p)) + kApicalDentineMm + (kCrownDentineMm - kApicalDentineMm) * smoothStep(-5.0, 0.0, p.z()), 0.2);

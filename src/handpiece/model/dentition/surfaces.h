@@ -47,7 +47,7 @@ class Loft {
         double topZ = 0.0, topLength = 0.0;  ///< length 0: open
     };
     Loft(Outlines outlines, Ends ends, double lean = 0.0, double wedge = 0.0, double skew = 0.0);
-    Loft(const std::vector<Section>& sections, Ends ends);
+    Loft(const std::vector<Section>& sections, Ends ends, double lean = 0.0, double wedge = 0.0, double skew = 0.0);
     [[nodiscard]] double value(const core::Vec3& p) const;
 
   private:
@@ -127,6 +127,7 @@ class Anatomy {
     [[nodiscard]] static double heightOver(const Curve& curve, double x, double y, double atLeast);
     [[nodiscard]] double grooveDepth(const core::Vec3& p) const;
     [[nodiscard]] double body(const core::Vec3& p) const;  ///< without grooves and the step at the cervix
+    [[nodiscard]] double chamber(const core::Vec3& p) const;
     [[nodiscard]] double step(double above) const;
     [[nodiscard]] double core(const core::Vec3& p, double bodyValue) const;
     void settleGrooves();

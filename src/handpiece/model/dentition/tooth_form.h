@@ -23,7 +23,7 @@ struct Patient {
 
 /// Raised when the same request gives another tooth or mouth: those that are kept are made anew, and exercises in which
 /// they stand get another version.
-inline constexpr int kTeethRevision = 4;
+inline constexpr int kTeethRevision = 5;
 
 class Anatomy;
 

@@ -187,15 +187,15 @@ struct Subject {
     view::BurFinish finish = view::BurFinish::diamond;
     view::Moment moment;
     std::optional<input::WorkingPosition> position;
-    std::unique_ptr<simulation::SessionPlayer> session;  ///< owns `live` where it came from there
+    std::shared_ptr<simulation::SessionPlayer> session;  ///< owns `live` where it came from there
 };
 
-void takeCase(Subject& subject, const cases::Case& toothCase, const PictureOptions& o) {
+void takeCase(Subject& subject, const std::shared_ptr<const cases::Case>& shared, const PictureOptions& o) {
+    const cases::Case& toothCase = *shared;
     subject.standing = view::standingOf(toothCase.fdiNumber, toothCase.buccalSign);
     subject.scenery = cases::surroundings(toothCase);
     subject.parts = toothCase.parts;
-    // A whole mouth's are some 100 MB: only a section shows their tissues.
-    if (!o.section.empty()) subject.others = std::make_shared<const std::vector<cases::PlacedTooth>>(toothCase.others);
+    subject.others = std::shared_ptr<const std::vector<cases::PlacedTooth>>(shared, &shared->others);
     subject.down = input::downInCase(toothCase);
     subject.bounds = subject.live->model().outer.bounds();
     if (o.position == 0) return;
@@ -209,7 +209,7 @@ void takeCase(Subject& subject, const cases::Case& toothCase, const PictureOptio
 Subject openSession(const PictureOptions& o) {
     studies::ProgressBar bar("preparing the tooth");
     Subject subject;
-    subject.session = std::make_unique<simulation::SessionPlayer>(o.what, !o.noCache, bar.listener());
+    subject.session = std::make_shared<simulation::SessionPlayer>(o.what, !o.noCache, bar.listener());
     simulation::SessionPlayer& player = *subject.session;
     const double atS = o.atGiven ? o.atS : player.durationS();
     if (!(atS >= 0.0 && atS <= player.durationS()))
@@ -229,7 +229,7 @@ Subject openSession(const PictureOptions& o) {
     subject.live = player.tooth();
     subject.bur = player.station().settings.bur;
     subject.finish = view::finishOf(*subject.bur, player.station().settings.cuttingParameters.name);
-    takeCase(subject, player.toothCase(), o);
+    takeCase(subject, std::shared_ptr<const cases::Case>(subject.session, &player.toothCase()), o);
     view::Moment& m = subject.moment;
     m.timeS = s.timeS;
     m.burInTooth.positionMm = {s.proxyPositionMm[0], s.proxyPositionMm[1], s.proxyPositionMm[2]};
@@ -273,12 +273,12 @@ Subject openCase(const PictureOptions& o, const Asked& asked) {
     inputs.unit = o.unit;
     inputs.voxelUm = attempt ? 1e3 * attempt->attempt.voxelMm : o.voxelUm;
     const tooth::LoadSettings prepare = prepareSettingsOf(inputs);
-    const cases::Case toothCase = attempt ? attempt->toothCase : readToothOf(inputs);
+    const auto toothCase = std::make_shared<const cases::Case>(attempt ? attempt->toothCase : readToothOf(inputs));
     simulation::SimulationSettings settings;
     settings.field = prepare.field;
     studies::ProgressBar bar("preparing the tooth");
     const simulation::SimulationSetup station = simulation::makeSimulation(
-        toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
+        *toothCase, std::move(settings), prepare.useCache, core::part(bar.listener(), 0.0, 0.7));
     tooth::StateDelta state;
     if (attempt) {
         state = tooth::decodeState(attempt->attempt.state, station.teeth(), o.what);
@@ -381,8 +381,8 @@ void picture(const PictureOptions& o) {
         renderer.updateBricks(subject.live->takeNews());
         renderer.setParts(subject.parts);
         if (!o.noScenery) {
-            renderer.setScenery(subject.scenery);
             renderer.setOthers(subject.others);
+            renderer.setScenery(subject.scenery);
         }
         renderer.setGingivaCuts(subject.live->gingiva().all(), subject.down);
     } else {

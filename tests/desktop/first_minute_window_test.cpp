@@ -144,7 +144,7 @@ TEST_F(FirstMinute, ASketchIsTurnedAndTheEyeStays) {
     view()->showSketch(eggTooth(46));
     EXPECT_EQ(view()->camera().eyeMm, turned.eyeMm);
     view()->clearTooth();
-    view()->setTooth(tooth, *simulator().toothCase(), nullptr);
+    view()->setTooth(tooth, simulator().toothCase(), nullptr);
     EXPECT_EQ(view()->camera().eyeMm, turned.eyeMm);
     view()->clearTooth();
     view()->showSketch(eggTooth(46));

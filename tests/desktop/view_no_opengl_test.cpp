@@ -21,7 +21,8 @@ TEST(ViewWithoutOpenGl, SaysSoAndGoesOn) {
     ASSERT_TRUE(missing.count() || missing.wait(60000));
     EXPECT_FALSE(missing[0][0].toString().isEmpty());
     EXPECT_FALSE(missing[0][1].toString().isEmpty());
-    view.setTooth(std::make_shared<simulation::LiveTooth>(cuttableBall(), tooth::StateDelta{}), ballCase(), nullptr);
+    view.setTooth(std::make_shared<simulation::LiveTooth>(cuttableBall(), tooth::StateDelta{}),
+                  std::make_shared<const cases::Case>(ballCase()), nullptr);
     auto mailbox = std::make_shared<device::PointerMailbox>();
     view.setPointer(mailbox, {});
     QTest::mousePress(&view, Qt::LeftButton, Qt::NoModifier, {250, 200});

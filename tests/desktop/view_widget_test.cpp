@@ -34,7 +34,7 @@ class ViewTest : public ::testing::Test {
     void SetUp() override {
         view_.resize(800, 600);
         view_.show();
-        view_.setTooth(live_, ballCase(), nullptr);
+        view_.setTooth(live_, std::make_shared<const cases::Case>(ballCase()), nullptr);
         view_.setBur(instrument::makeInstrument("round-4").bur);
         core::Pose start;
         start.positionMm = {0, 0, 12};

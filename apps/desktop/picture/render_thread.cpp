@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "handpiece/app/input/working_position.h"
 #include "handpiece/base/core/any_error.h"
 #include "handpiece/base/rt/realtime_thread.h"
 
@@ -97,9 +98,9 @@ struct RenderThread::Shared {
     RenderRequest renderRequest;
     std::shared_ptr<simulation::LiveTooth> tooth;
     std::shared_ptr<simulation::SampleFeed> feed;
-    std::shared_ptr<const std::vector<cases::Part>> parts, scenery;
+    std::shared_ptr<const cases::Case> toothCase;
+    std::shared_ptr<const std::vector<cases::Part>> scenery;
     std::shared_ptr<const instrument::Bur> bur;
-    core::Vec3 down = -core::Vec3::UnitZ();
     std::shared_ptr<const geometry::TriangleMesh> turbine;
     std::optional<view::SectionFace> face;
     std::optional<std::vector<view::GlassSurface>> glass;
@@ -132,7 +133,8 @@ struct RenderThread::Worker {
     std::unique_ptr<view::Renderer> renderer, before;  // `before` is made when it is first asked for
     std::shared_ptr<simulation::LiveTooth> tooth;
     std::shared_ptr<simulation::SampleFeed> feed;
-    std::shared_ptr<const std::vector<cases::Part>> parts, scenery;
+    std::shared_ptr<const cases::Case> toothCase;
+    std::shared_ptr<const std::vector<cases::Part>> scenery;
     std::shared_ptr<const instrument::Bur> bur;
     RenderRequest renderRequest;
     std::optional<view::Plane> cutPlane;
@@ -149,9 +151,12 @@ struct RenderThread::Worker {
 
     void setTooth(view::Renderer& to, bool alsoCuts) const {
         to.setTooth(tooth ? tooth->model().outer.bounds() : sketchBounds());
-        if (parts) to.setParts(*parts);
+        std::shared_ptr<const std::vector<cases::PlacedTooth>> others;
+        if (toothCase) others = std::shared_ptr<const std::vector<cases::PlacedTooth>>(toothCase, &toothCase->others);
+        to.setOthers(std::move(others));
         if (scenery) to.setScenery(*scenery);
         if (!tooth) return;
+        to.setParts(toothCase->parts);
         to.updateBricks(tooth->uncutSurface(), true);
         if (alsoCuts) to.updateBricks(tooth->takeNews());
     }
@@ -346,11 +351,11 @@ void RenderThread::run() {
             if (std::exchange(shared_->newTooth, false)) {
                 worker.tooth = shared_->tooth;
                 worker.feed = shared_->feed;
-                worker.parts = shared_->parts;
+                worker.toothCase = shared_->toothCase;
                 worker.scenery = shared_->scenery;
                 worker.sample = shared_->sample;
                 worker.wantsDepths = false;
-                worker.down = shared_->down;
+                if (worker.toothCase) worker.down = input::downInCase(*worker.toothCase);
                 newTooth = true;
             }
             newBur = std::exchange(shared_->newBur, false);
@@ -453,18 +458,25 @@ void tell(Shared& shared, F&& change) {
 
 }  // namespace
 
-void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
-                            std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed,
-                            const core::Vec3& down) {
-    auto keptParts = std::make_shared<const std::vector<cases::Part>>(std::move(parts));
-    auto keptScenery = std::make_shared<const std::vector<cases::Part>>(std::move(scenery));
+void RenderThread::setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::shared_ptr<const cases::Case> toothCase,
+                            std::shared_ptr<simulation::SampleFeed> feed) {
+    std::vector<cases::Part> around = cases::surroundings(*toothCase);
+    show(std::move(tooth), std::move(toothCase), std::move(around), std::move(feed));
+}
+
+void RenderThread::setSketch(std::vector<cases::Part> shown) {
+    show(nullptr, nullptr, std::move(shown), nullptr);
+}
+
+void RenderThread::show(std::shared_ptr<simulation::LiveTooth> tooth, std::shared_ptr<const cases::Case> toothCase,
+                        std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed) {
+    auto kept = std::make_shared<const std::vector<cases::Part>>(std::move(scenery));
     listenTo(feed);
     tell(*shared_, [&](Shared& s) {
         s.tooth = std::move(tooth);
-        s.parts = std::move(keptParts);
-        s.scenery = std::move(keptScenery);
+        s.toothCase = std::move(toothCase);
+        s.scenery = std::move(kept);
         s.feed = std::move(feed);
-        s.down = down;
         s.given.reset();
         s.face.reset();
         s.glass.reset();

@@ -19,6 +19,7 @@
 #include "handpiece/app/simulation/live_session.h"
 #include "handpiece/app/simulation/live_tooth.h"
 #include "handpiece/base/messages/haptic_sample.h"
+#include "handpiece/model/case/case.h"
 #include "handpiece/senses/view/camera.h"
 #include "handpiece/senses/view/look.h"
 #include "handpiece/senses/view/renderer.h"
@@ -61,11 +62,11 @@ class RenderThread {
     RenderThread(const RenderThread&) = delete;
     RenderThread& operator=(const RenderThread&) = delete;
 
-    /// Null: an empty scene. `parts`: the tooth's tissues, `scenery`: what stands around it; `down`: as
-    /// gravity acts on the patient.
-    void setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::vector<cases::Part> parts,
-                  std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed,
-                  const core::Vec3& down = -core::Vec3::UnitZ());
+    /// In what the case has around it.
+    void setTooth(std::shared_ptr<simulation::LiveTooth> tooth, std::shared_ptr<const cases::Case> toothCase,
+                  std::shared_ptr<simulation::SampleFeed> feed);
+    /// Surfaces alone; none: an empty scene.
+    void setSketch(std::vector<cases::Part> shown);
     void setBur(std::shared_ptr<const instrument::Bur> bur);
     void setTurbine(geometry::TriangleMesh mesh);
     void setSample(const messages::HapticSample& sample);
@@ -91,6 +92,8 @@ class RenderThread {
     struct Shared;
     void run();
     void listenTo(std::shared_ptr<simulation::SampleFeed> feed);
+    void show(std::shared_ptr<simulation::LiveTooth> tooth, std::shared_ptr<const cases::Case> toothCase,
+              std::vector<cases::Part> scenery, std::shared_ptr<simulation::SampleFeed> feed);
 
     Callbacks callbacks_;
     std::shared_ptr<simulation::SampleFeed> heard_;

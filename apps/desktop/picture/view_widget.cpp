@@ -51,15 +51,14 @@ ViewWidget::ViewWidget(QWidget* parent) : QWidget(parent), state_(std::make_uniq
 
 ViewWidget::~ViewWidget() = default;
 
-void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
-                          std::shared_ptr<simulation::SampleFeed> feed) {
+void ViewWidget::setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth,
+                          std::shared_ptr<const cases::Case> toothCase, std::shared_ptr<simulation::SampleFeed> feed) {
     clearTooth();
     State& s = *state_;
     s.tooth = std::move(liveTooth);
-    s.take(toothCase, s.tooth->model().outer.bounds());
-    s.tissues = tissuesOf(toothCase);
-    s.render->setTooth(s.tooth, toothCase.parts, cases::surroundings(toothCase), std::move(feed),
-                       input::downInCase(toothCase));
+    s.take(*toothCase, s.tooth->model().outer.bounds());
+    s.tissues = tissuesOf(*toothCase);
+    s.render->setTooth(s.tooth, std::move(toothCase), std::move(feed));
     s.probe->setTooth(s.tooth);
     showStandardView(view::StandardView::oblique);
     s.firstEye = s.camera;
@@ -95,7 +94,7 @@ void ViewWidget::showSketch(const cases::Case& sketch) {
         shown.push_back(std::move(part));
     s.isSketch = true;
     s.take(sketch, bounds);
-    s.render->setTooth(nullptr, {}, std::move(shown), nullptr);
+    s.render->setSketch(std::move(shown));
     showStandardView(view::StandardView::oblique);
     s.firstEye = s.camera;
     s.takeKeptEye();
@@ -134,7 +133,7 @@ void ViewWidget::clearTooth() {
     s.frame.reset();
     s.tooth.reset();
     s.probe->setTooth(nullptr);
-    s.render->setTooth(nullptr, {}, {}, nullptr);
+    s.render->setSketch({});
     update();
 }
 

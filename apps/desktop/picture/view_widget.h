@@ -45,7 +45,7 @@ class ViewWidget : public QWidget {
 
     /// Another tooth, with the neighbours of its case. `feed`: a sitting's samples, this widget is its one reader; null
     /// in a replay, where setSample() says where the bur is. Takes pointer and measurements away, fits the camera.
-    void setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, const cases::Case& toothCase,
+    void setTooth(std::shared_ptr<simulation::LiveTooth> liveTooth, std::shared_ptr<const cases::Case> toothCase,
                   std::shared_ptr<simulation::SampleFeed> feed);
     /// Until another tooth, instead of how it stands in the mouth: in an arm's reach crowns are up, and what the hand
     /// does is to be seen the same way round.

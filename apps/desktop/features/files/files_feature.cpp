@@ -155,9 +155,9 @@ void FilesFeature::connectJobs() {
     });
     connect(&simulator_, &Simulator::jobStepped, &job, &JobStrip::setStep);
     connect(&simulator_, &Simulator::sketched, this, [this](const std::shared_ptr<const cases::Case>& sketch) {
-        simulator_.touch() ? showTouch(*sketch) : view_.showSketch(*sketch);
+        simulator_.touch() ? showTouch(sketch) : view_.showSketch(*sketch);
     });
-    connect(&simulator_, &Simulator::touchBegan, this, [this] { showTouch(*simulator_.touch()->of->toothCase); });
+    connect(&simulator_, &Simulator::touchBegan, this, [this] { showTouch(simulator_.touch()->of->toothCase); });
     connect(&simulator_, &Simulator::jobProgressed, &job, &JobStrip::setFraction);
     connect(&simulator_, &Simulator::jobProgressed, this, [this](double fraction) { prepared_ = fraction; });
     connect(&view_, &ViewWidget::pressedChanged, this, [this](bool pressed) {
@@ -178,7 +178,7 @@ void FilesFeature::connectJobs() {
 }
 
 /// The tooth that can be touched, in what is known of its surroundings.
-void FilesFeature::showTouch(const cases::Case& surroundings) {
+void FilesFeature::showTouch(const std::shared_ptr<const cases::Case>& surroundings) {
     const Simulator::Touch& touch = *simulator_.touch();
     if (view_.hasTooth()) view_.keepEye();
     view_.setTooth(touch.of->liveTooth, surroundings, touch.feed);

@@ -34,7 +34,7 @@ class FilesFeature : public Feature {
     void listRecent();
     [[nodiscard]] QString recordingTitle() const;
     [[nodiscard]] QString exerciseTitle() const;
-    void showTouch(const cases::Case& surroundings);
+    void showTouch(const std::shared_ptr<const cases::Case>& surroundings);
     void showTitle();
     void hearOfFiles();
     void offerToMend(ErrorDialog* dialog);

@@ -176,7 +176,7 @@ void ViewFeature::showDocument() {
         return;
     }
     const cases::Case& toothCase = *simulator_.toothCase();
-    view_.setTooth(simulator_.tooth(), toothCase, simulator_.pictureFeed());
+    view_.setTooth(simulator_.tooth(), simulator_.toothCase(), simulator_.pictureFeed());
     if (isByArm()) view_.setStanding(view::Standing(toothCase.buccalSign));
     const core::Pose held = heldPose();
     view_.setPointer(simulator_.mailbox(), held);

@@ -12,8 +12,8 @@ namespace {
 using cases::Tissue;
 using core::Vec3;
 
-// A canal's direction is that of its first millimetres, by the middles of its sections.
-constexpr double kSectionMm = 0.25, kCanalMm = 2.0, kCanalRadiusMm = 0.6, kSectionStepMm = 0.05;
+// A canal's direction is that of its first millimetres under the funnel of its orifice, by the middles of its sections.
+constexpr double kSectionMm = 0.25, kFunnelMm = 1.0, kCanalMm = 3.0, kCanalRadiusMm = 0.6, kSectionStepMm = 0.05;
 constexpr std::size_t kLeastMiddles = 3;
 constexpr double kLineStepMm = 0.02, kLineMm = 30.0;
 constexpr double kOverFloorMm = 2.0;  // higher over the orifices no chamber begins
@@ -47,8 +47,11 @@ Vec3 canalWay(const tooth::ToothModel& whole, const Vec3& orifice, const DrawFra
             }
         if (count == 0) break;
         const Vec3 next = sum / count;
-        if (!middles.empty()) step = next - middles.back();
-        middles.push_back(next);
+        // A section of the funnel opens towards the chamber: its middle leans there.
+        if (deep > kFunnelMm) {
+            if (!middles.empty()) step = next - middles.back();
+            middles.push_back(next);
+        }
         centre = next;
     }
     if (middles.size() < kLeastMiddles) return frame.w;

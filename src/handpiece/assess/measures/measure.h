@@ -49,7 +49,7 @@ struct MeasureKind {
 
 /// Raised with every change after which the same work may be measured otherwise, or another measure is taken: kept
 /// values of before are taken anew.
-inline constexpr int kMeasuresRevision = 6;
+inline constexpr int kMeasuresRevision = 7;
 
 /// All there are, by id.
 [[nodiscard]] std::span<const MeasureKind> measureKinds();

@@ -104,14 +104,22 @@ cases::Tooth makeTooth(int fdi, const Patient& patient, const ToothOptions& opti
                          std::sqrt(kFacesPerCell * areaMm2[i] / (kOversampling * static_cast<double>(faces))));
             // Where thin edges have come to cross or are pierced, other samples are not.
             constexpr int kTries = 5;
-            for (int attempt = 0; attempt < kTries; ++attempt) {
+            constexpr double kHoldMm = 0.3;
+            bool isSolid = false;
+            for (int attempt = 0; attempt < kTries && !isSolid; ++attempt) {
                 const double cellMm = spacing * (1.0 - 0.04 * attempt);
                 TriangleMesh fine = largestShell(sampled(form.bounds(), of(i), cellMm, 2, told(i, 0.0, 0.5)));
                 if (i == 0) geometry::fitCreases(fine, of(i), cellMm);
                 meshes[i] = geometry::decimate(fine, faces, told(i, 0.5, 1.0)).mesh;
                 const bool isBall = 2 * meshes[i].vertices.size() == meshes[i].triangles.size() + 4;
-                if (isBall && geometry::selfIntersections(meshes[i], 1).empty()) break;
+                isSolid = isBall && geometry::selfIntersections(meshes[i], 1).empty();
+                if (isSolid || !isBall || !geometry::selfIntersections(fine, 1).empty()) continue;
+                if (auto thinned = geometry::decimateUncrossed(fine, faces, kHoldMm))
+                    meshes[i] = *std::move(thinned), isSolid = true;
             }
+            if (!isSolid)
+                throw core::Error(fmt::format("the surface of tooth {} crosses itself with {} faces", fdi, faces),
+                                  "--faces", "ask for more faces, or for another patient");
         }
     });
     made.outer = std::move(meshes[0]);

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/parallel.h"
+#include "handpiece/base/geometry/self_intersection.h"
 #include "handpiece/base/geometry/triangle_tree.h"
 #include "handpiece/model/case/fdi.h"
 
@@ -127,13 +128,68 @@ Ground groundOf(const cases::Tooth& tooth, const Bite& bite, Edges edges) {
     return made;
 }
 
+/// The faces of a mesh that reach into a box.
+geometry::TriangleMesh facesIn(const core::Box& box, const std::vector<geometry::Triangle>& faces,
+                               const std::vector<Vec3>& vertices) {
+    geometry::TriangleMesh mesh{vertices, {}};
+    for (const geometry::Triangle& t : faces) {
+        core::Box own;
+        for (const std::uint32_t v : t)
+            own.extend(vertices[v]);
+        if ((own.min.array() <= box.max.array()).all() && (own.max.array() >= box.min.array()).all())
+            mesh.triangles.push_back(t);
+    }
+    return mesh;
+}
+
+/// What gives way in different directions side by side may fold over itself: there it goes as its surroundings do, and
+/// where that does not help it stays as it was.
+void unfold(const std::vector<geometry::Triangle>& faces, const std::vector<Vec3>& was, std::vector<Vec3>& is) {
+    constexpr int kSmoothings = 6, kRounds = 16;
+    for (int round = 0; round < kRounds; ++round) {
+        core::Box moved;
+        for (std::size_t v = 0; v < was.size(); ++v)
+            if (is[v] != was[v]) moved.extend(was[v]), moved.extend(is[v]);
+        if (moved.isEmpty()) return;
+        const geometry::TriangleMesh near = facesIn(moved, faces, is);
+        const auto crossings = geometry::selfIntersections(near);
+        if (crossings.empty()) return;
+        std::vector<std::uint8_t> folds(was.size(), 0);
+        for (const geometry::CrossingFaces& c : crossings)
+            for (const std::uint32_t f : {c.first, c.second})
+                for (const std::uint32_t v : near.triangles[f])
+                    folds[v] = 1;
+        for (int ring = 0; ring < 1 + round / kSmoothings; ++ring) {
+            const std::vector<std::uint8_t> before = folds;
+            for (const geometry::Triangle& t : near.triangles)
+                if (before[t[0]] != 0 || before[t[1]] != 0 || before[t[2]] != 0)
+                    folds[t[0]] = folds[t[1]] = folds[t[2]] = 1;
+        }
+        std::vector<Vec3> sum(was.size(), Vec3::Zero());
+        std::vector<int> count(was.size(), 0);
+        for (const geometry::Triangle& t : near.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const std::uint32_t v = t[k], next = t[(k + 1) % 3];
+                sum[v] += is[next] - was[next];
+                ++count[v];
+            }
+        for (std::size_t v = 0; v < was.size(); ++v)
+            if (folds[v] != 0) is[v] = round < kSmoothings && count[v] > 0 ? Vec3(was[v] + sum[v] / count[v]) : was[v];
+    }
+}
+
 void take(cases::Tooth& tooth, Ground ground) {
+    unfold(tooth.outer.triangles, tooth.outer.vertices, ground.outer);
     tooth.outer.vertices = std::move(ground.outer);
     auto enamel = ground.enamel.begin(), mark = ground.marks.begin();
-    for (cases::Part& part : tooth.parts)
-        if (part.tissue == cases::Tissue::enamel)
-            for (Vec3& p : part.mesh.vertices)
-                p = *enamel++;
+    for (cases::Part& part : tooth.parts) {
+        if (part.tissue != cases::Tissue::enamel) continue;
+        const auto end = enamel + static_cast<std::ptrdiff_t>(part.mesh.vertices.size());
+        std::vector<Vec3> moved(enamel, end);
+        unfold(part.mesh.triangles, part.mesh.vertices, moved);
+        part.mesh.vertices = std::move(moved);
+        enamel = end;
+    }
     for (cases::Landmark& landmark : tooth.landmarks)
         if (isOfTheTooth(landmark.kind))
             for (Vec3& p : landmark.pointsMm)

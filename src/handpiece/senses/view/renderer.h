@@ -111,7 +111,7 @@ class Renderer {
     /// A tooth that is one mesh and is not cut (an STL to look at); `tissue` colours it, or what a scanner saw.
     void setMesh(const geometry::TriangleMesh& mesh, cases::Tissue tissue, const geometry::VertexColours& colours = {});
     /// cases::Case::others: their tissues are seen in a section while they are whole. Those of which none are known are
-    /// filled in the colour of their surface.
+    /// filled in the colour of their surface. Before the scenery, whose teeth have their necks where their enamel ends.
     void setOthers(std::shared_ptr<const std::vector<cases::PlacedTooth>> others);
     /// cases::surroundings(): tooth number n is the part n - 1, and drawn no more once bricks of it have come.
     void setScenery(std::span<const cases::Part> parts);

@@ -2,7 +2,9 @@
 #include "handpiece/senses/view/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "handpiece/model/case/held_aside.h"
@@ -18,15 +20,17 @@ namespace {
 constexpr std::size_t kMaxChanges = 20000;
 constexpr double kCreaseRad = 0.9, kPieceTriangles = 200.0;
 constexpr double kCrownCentreMm = 3.0, kCrownMm = 7.0;  // under a crown's top: a first molar's is 7.5 mm high [R]
+constexpr int kNeckSectors = 24;
 constexpr double kBeforeProximalMm = 0.05, kOverOcclusalMm = 4.0;
 constexpr float kPatchMm = 2.0f;
 constexpr double kSectionPixelMm = 0.05;
 constexpr std::size_t kTrianglesACall = 6000;  // to be simplified: some milliseconds
 
-/// Of an adjacent tooth nothing else is known than its surface: how high each of its vertices lies in the crown goes
-/// where removed depths do, 20 mm for its top, so that its neck is shaded as the worked tooth's is. The long axis is
-/// that along which it is longest; `hangs`: of the other jaw.
-void noteHeights(const geometry::TriangleMesh& mesh, bool hangs, std::vector<MeshPiece>& pieces) {
+/// How high each vertex of an adjacent tooth lies in the crown goes where removed depths do, 20 mm for its top, so that
+/// its neck is shaded as the worked tooth's is. The long axis is that along which it is longest; `hangs`: of the other
+/// jaw; `enamel`: its vertices, where they are known.
+void noteHeights(const geometry::TriangleMesh& mesh, bool hangs, std::span<const core::Vec3> enamel,
+                 std::vector<MeshPiece>& pieces) {
     core::Vec3 middle = core::Vec3::Zero();
     for (const core::Vec3& v : mesh.vertices)
         middle += v / static_cast<double>(mesh.vertices.size());
@@ -43,11 +47,30 @@ void noteHeights(const geometry::TriangleMesh& mesh, bool hangs, std::vector<Mes
     double topMm = -1e300;
     for (const core::Vec3& v : mesh.vertices)
         topMm = std::max(topMm, up.dot(v));
+    // Enamel ends higher between teeth than towards lip and tongue.
+    const core::Vec3 ahead = up.unitOrthogonal(), aside = up.cross(ahead);
+    const auto sectorOf = [&](const core::Vec3& p) {
+        const double turn = std::atan2(aside.dot(p - middle), ahead.dot(p - middle)) / (2.0 * std::numbers::pi);
+        return kNeckSectors * (turn - std::floor(turn));
+    };
+    std::array<double, kNeckSectors> neckMm;
+    neckMm.fill(enamel.empty() ? topMm - kCrownMm : topMm);
+    for (const core::Vec3& v : enamel) {
+        double& lowest = neckMm[static_cast<std::size_t>(sectorOf(v)) % kNeckSectors];
+        lowest = std::min(lowest, up.dot(v));
+    }
+    const auto neckAt = [&](const core::Vec3& p) {
+        const double sector = sectorOf(p) - 0.5 + kNeckSectors;
+        const auto before = static_cast<std::size_t>(sector);
+        const double share = sector - static_cast<double>(before);
+        return (1.0 - share) * neckMm[before % kNeckSectors] + share * neckMm[(before + 1) % kNeckSectors];
+    };
     for (MeshPiece& piece : pieces)
         for (GpuVertex& v : piece.vertices) {
             const core::Vec3 p(static_cast<double>(v.positionMm[0]), static_cast<double>(v.positionMm[1]),
                                static_cast<double>(v.positionMm[2]));
-            const double share = std::clamp(1.0 - (topMm - up.dot(p)) / kCrownMm, 0.0, 1.0);
+            const double neck = std::min(neckAt(p), topMm - 1.0);
+            const double share = std::clamp((up.dot(p) - neck) / (topMm - neck), 0.0, 1.0);
             v.removedUm = static_cast<std::uint16_t>(std::lround(20000.0 * share));
         }
 }
@@ -225,7 +248,15 @@ void Scene::add(std::vector<Static>& to, const geometry::TriangleMesh& mesh, cas
     const double cells = std::max(1.0, static_cast<double>(mesh.triangles.size()) / kPieceTriangles);
     std::vector<MeshPiece> pieces =
         piecesOf(mesh, tissue, kCreaseRad, box.size().maxCoeff() / std::sqrt(cells), colours);
-    if (tissue == cases::Tissue::neighbour) noteHeights(mesh, box.centre().z() > toothBounds_.max.z(), pieces);
+    if (tissue == cases::Tissue::neighbour) {
+        std::vector<core::Vec3> enamel;
+        if (others_ != nullptr && part < others_->size())
+            for (const cases::Part& own : (*others_)[part].parts)
+                if (own.tissue == cases::Tissue::enamel)
+                    for (const core::Vec3& v : own.mesh.vertices)
+                        enamel.push_back((*others_)[part].inCase.apply(v));
+        noteHeights(mesh, box.centre().z() > toothBounds_.max.z(), enamel, pieces);
+    }
     for (MeshPiece& piece : pieces) {
         to.push_back({tissue, pool_.add(piece), box, part, false, nullptr, 0});
         if (tissue == cases::Tissue::gum) to.back().uncut = std::make_shared<const MeshPiece>(std::move(piece));

@@ -440,8 +440,12 @@ double Anatomy::grooveDepth(const Vec3& p) const {
 double Anatomy::body(const Vec3& p) const {
     double value = crown_.value(p);
     if (!spec_.crests.empty() && p.z() > 0.25 * topZ_) {
-        const double top = kHeightToDistance * (p.z() - occlusalHeight(p.x(), p.y()));
-        value = smoothMax(value, top, spec_.rimRound);
+        // Nowhere is the occlusal surface lower than its ground, but over an edge: down the sides it counts no more.
+        const bool counts = spec_.isEdge || value - kHeightToDistance * (p.z() - spec_.groundZ) < spec_.rimRound;
+        if (counts) {
+            const double top = kHeightToDistance * (p.z() - occlusalHeight(p.x(), p.y()));
+            value = smoothMax(value, top, spec_.rimRound);
+        }
     }
     if (p.z() < 3.0 && roots_.size() > 1) {
         // They pass into each other towards the furcation, and leave the cervix as it is.

@@ -144,6 +144,26 @@ function(handpiece_embed_viewer target space folder style)
     handpiece_embed(${target} ${space} kViewerStyle ${folder}/${style})
 endfunction()
 
+# Tests that take longest, by the clock of two laden cores [s]: CTest starts them first, so that none runs on alone at the
+# end. A fresh clone has no history that would tell it.
+set(HANDPIECE_LONG_TESTS school_server_test=330 docs_blocks=300 school_server_postgres_test=300 school_robust_test=290
+    mouth_test=280 mouth_course_test=280 practice_window_test=230 exercise_window_test=220 marking_window_test=220
+    golden_test=190 exam_window_test=190 shell_window_test=190 system_review=190 editor_window_test=170 books_test=160
+    system_bad_input=160 system_picture=150 preparation_test=150 live_session_test=140 school_attacks_test=140
+    system_score=140 draft_test=120 course_test=120 walk_school=110 lesion_test=100 backup_test=90 real_data_test=90
+    marking_kill_test=85 said_window_test=80 system_case=80 tooth_form_test=80 scan_wizard_test=75 school_window_test=75
+    system_permissions=75 system_make_mesh=70 device_window_test=70 system_exercise=70 system_trials=70 system_window=70
+    packaging=65 result_window_test=65 first_minute_window_test=60 find_landmarks_test=60 scan_work_test=60
+    proving_test=55 published_sizes_test=55)
+# To be called where the test is added, once it is.
+function(handpiece_start_early)
+    foreach(name IN LISTS ARGN)
+        if(HANDPIECE_LONG_TESTS MATCHES "(^|;)${name}=([0-9]+)")
+            set_tests_properties(${name} PROPERTIES COST ${CMAKE_MATCH_2})
+        endif()
+    endforeach()
+endfunction()
+
 # handpiece_test(name SOURCES ... USES room... LIBS lib... LABELS ... [TRAPPED]): a test of CTest, of these sources in the program
 # of their wing (the first folder under tests/), WING_tests. TRAPPED: in WING_trapped_tests, where malloc and locks are
 # watched. Each source has a namespace of its own: several are compiled at once.
@@ -181,6 +201,7 @@ function(handpiece_test_again name of test)
     get_property(files GLOBAL PROPERTY HANDPIECE_SOURCES_OF_${test})
     add_test(NAME ${name} COMMAND ${program} --sources=${files})
     set_tests_properties(${name} PROPERTIES TIMEOUT 1800)
+    handpiece_start_early(${name})
     handpiece_test_by_name(${name} ${program} ${files})
 endfunction()
 

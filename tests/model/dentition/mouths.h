@@ -50,12 +50,37 @@ struct Mouth {
     }
 };
 
+inline bool isRightTooth(std::size_t i) {
+    return fdiOf(i) / 10 == 1 || fdiOf(i) / 10 == 4;
+}
+
+/// Left teeth are the right ones in the mirror, bit for bit (tooth_form_test): half of the time.
+inline void addLeftTeeth(std::vector<cases::Tooth>& teeth) {
+    const auto turn = [](TriangleMesh& mesh) {
+        for (Vec3& v : mesh.vertices)
+            v.y() = -v.y();
+        for (geometry::Triangle& t : mesh.triangles)
+            std::swap(t[1], t[2]);
+    };
+    for (std::size_t i = 0; i < kToothCount; ++i) {
+        if (isRightTooth(i)) continue;
+        const int fdi = fdiOf(i);
+        cases::Tooth& left = teeth[i] = teeth[indexOf(fdi < 30 ? fdi - 10 : fdi + 10)];
+        left.fdiNumber = fdi, left.buccalSign = -left.buccalSign;
+        turn(left.outer);
+        for (cases::Part& part : left.parts)
+            turn(part.mesh);
+        for (cases::Landmark& mark : left.landmarks)
+            for (Vec3& p : mark.pointsMm)
+                p.y() = -p.y();
+    }
+}
+
 inline std::vector<cases::Tooth> coarseTeeth(const Patient& patient, double spacingMm = 0.3) {
     std::vector<cases::Tooth> teeth(kToothCount);
-    const auto isRight = [](std::size_t i) { return fdiOf(i) / 10 == 1 || fdiOf(i) / 10 == 4; };
     core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
-            if (!isRight(i)) continue;
+            if (!isRightTooth(i)) continue;
             const ToothForm form(fdiOf(i), patient);
             geometry::IsosurfaceSettings settings;
             settings.spacingMm = spacingMm;
@@ -69,20 +94,7 @@ inline std::vector<cases::Tooth> coarseTeeth(const Patient& patient, double spac
             teeth[i].landmarks = form.landmarks();
         }
     });
-    // Left teeth are these in the mirror, bit for bit (tooth_form_test).
-    for (std::size_t i = 0; i < kToothCount; ++i) {
-        if (isRight(i)) continue;
-        const int fdi = fdiOf(i);
-        cases::Tooth& left = teeth[i] = teeth[indexOf(fdi < 30 ? fdi - 10 : fdi + 10)];
-        left.fdiNumber = fdi, left.buccalSign = -left.buccalSign;
-        for (Vec3& v : left.outer.vertices)
-            v.y() = -v.y();
-        for (geometry::Triangle& t : left.outer.triangles)
-            std::swap(t[1], t[2]);
-        for (cases::Landmark& mark : left.landmarks)
-            for (Vec3& p : mark.pointsMm)
-                p.y() = -p.y();
-    }
+    addLeftTeeth(teeth);
     return teeth;
 }
 

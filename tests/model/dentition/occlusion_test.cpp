@@ -125,8 +125,9 @@ struct Ground {
     Ground() : whole(kToothCount) {
         core::parallelFor(kToothCount, 1, [&](std::size_t from, std::size_t to) {
             for (std::size_t i = from; i < to; ++i)
-                whole[i] = makeTooth(fdiOf(i), {1, 25.0}, {4000, 0});
+                if (isRightTooth(i)) whole[i] = makeTooth(fdiOf(i), {1, 25.0}, {8000, 0});
         });
+        addLeftTeeth(whole);
         teeth = whole;
         arches = arrange(teeth);
         grindFacets(teeth, arches);

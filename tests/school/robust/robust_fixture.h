@@ -21,15 +21,13 @@
 #include "handpiece/school/people/secret.h"
 #include "handpiece/school/store/books_accounts.h"
 #include "school/server/school_fixture.h"
+#include "support/times.h"
 
 namespace handpiece::school_server {
 
 using namespace std::chrono_literals;
 
-inline int times(const char* variable, int few) {
-    const char* const text = std::getenv(variable);
-    return text ? std::max(1, std::atoi(text)) : few;
-}
+using test::times;
 
 /// A program of its own, as an administrator or a student starts it; `ahead`: so much its machine's clock is.
 class Program {

@@ -18,6 +18,7 @@
 #include "handpiece/assess/task/task.h"
 #include "handpiece/base/core/file.h"
 #include "school/http.h"
+#include "school/lent_work.h"
 #include "school/server.h"
 #include "school/station.h"
 #include "school/store/postgres_server.h"
@@ -207,6 +208,16 @@ class Chair {
     test::TemporaryFolder home_;
     school::Store store_;
 };
+
+/// Scores all that waits, as the server's own worker does. In a fixture it is the same recording by the same rubric for
+/// each test: proven once, in a process of its own, and kept in `known`. Tests of the worker ask the worker.
+inline void scoreAll(const fs::path& data, std::optional<sandboxed::Proof>& known) {
+    const std::unique_ptr<WorkSource> source = worksOf({data, databaseOf(data)}, systemClock());
+    while (const std::unique_ptr<LentWork> work = source->take()) {
+        if (!known) known = sandboxed::prove(work->question(), work->files({}));
+        work->enter(*known, {});
+    }
+}
 
 class SchoolTest : public testing::Test {
   protected:

@@ -303,7 +303,7 @@ TEST_P(BooksTest, RepetitionAndAnotherOrderMakeTheSameBooks) {
 TEST_P(BooksTest, AnUploadGoesOnFromEveryPlaceAndLiesThereWholeOrNotAtAll) {
     auto books = filled();
     std::mt19937_64 random(test::seed());
-    const std::string bytes = randomBytes(random, 101);
+    const std::string bytes = randomBytes(random, 31);
     const fs::path whole = books->files().path(sha256(bytes));
     for (std::size_t cut = 0; cut <= bytes.size(); ++cut) {
         const Upload up = uploadOf(bytes, id(0x100 + cut));

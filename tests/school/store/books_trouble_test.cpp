@@ -16,6 +16,7 @@
 #include "support/at_once.h"
 #include "support/error_of.h"
 #include "support/random.h"
+#include "support/times.h"
 
 namespace handpiece::school::books_trouble_test {
 namespace {
@@ -25,6 +26,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
+
+/// Of each trouble; the schedule of the machine is another each time.
+int rounds(int few) {
+    return test::times("HANDPIECE_KILLS", few);
+}
 
 class BooksInTroubleTest : public BooksTest {};
 INSTANTIATE_TEST_SUITE_P(Both, BooksInTroubleTest, testing::Values("sqlite", "postgres"),
@@ -247,7 +253,7 @@ TEST_P(BooksInTroubleTest, ComeUpFromVersionOneAlsoWhenThatIsKilled) {
     };
     const std::string whole = schema();
     std::mt19937_64 random(test::seed());
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < rounds(6); ++round) {
         dropLaterTables();
         sql("UPDATE handpiece_books SET version = 1");
         ASSERT_NE(schema(), whole);
@@ -322,7 +328,7 @@ TEST_P(BooksInTroubleTest, WhoWritesWithoutAPauseStarvesNobody) {
 }
 
 TEST_P(BooksInTroubleTest, AreMadeOnceWhenManyComeToThemFirst) {
-    for (int round = 0; round < 20; ++round) {
+    for (int round = 0; round < rounds(5); ++round) {
         data_ = folder_.path() / fmt::format("first{}", round);
         if (isPostgres()) address_ = server()->address(schema_ = server()->newSchema());
         test::atOnce(6, [&] { EXPECT_EQ(test::errorOf([&] { static_cast<void>(open()); }), ""); });
@@ -337,7 +343,7 @@ TEST_P(BooksInTroubleTest, MakingThemIsKilledAtAnyMomentAndBegunAnew) {
     static_cast<void>(open());
     // How long it takes is what else the machine has to do: where the kills come too late, the next come sooner.
     auto making = std::chrono::steady_clock::now() - start;
-    for (int round = 0; round < 25; ++round) {
+    for (int round = 0; round < rounds(10); ++round) {
         data_ = folder_.path() / fmt::format("made{}", round);
         if (isPostgres()) address_ = server()->address(schema_ = server()->newSchema());
         const pid_t child = fork();
@@ -356,7 +362,7 @@ TEST_P(BooksInTroubleTest, MakingThemIsKilledAtAnyMomentAndBegunAnew) {
         auto books = filled();
         EXPECT_THAT(books->people(), SizeIs(5));
     }
-    EXPECT_GT(unmade, 3);
+    EXPECT_GT(unmade, 0);
 }
 
 // The server is killed while it takes attempts and files: what it had confirmed is there, and nothing is there in part.
@@ -370,7 +376,7 @@ TEST_P(BooksInTroubleTest, NothingConfirmedIsLostAndNothingHalfThereAfterKillNin
         std::mt19937_64 own(n);
         return randomBytes(own, 150'000);
     };
-    for (int round = 0; round < 50; ++round) {
+    for (int round = 0; round < rounds(15); ++round) {
         int ends[2];
         ASSERT_EQ(pipe(ends), 0);
         const pid_t child = fork();
@@ -427,7 +433,7 @@ TEST_P(BooksInTroubleTest, NothingConfirmedIsLostAndNothingHalfThereAfterKillNin
     for (const std::string& hash : books->files().all())
         EXPECT_EQ(sha256Of(books->files().path(hash)), hash) << "nothing in part";
     EXPECT_EQ(sql("SELECT count(*) FROM attempts"), sql("SELECT count(DISTINCT attempt) FROM attempt_files"));
-    EXPECT_GE(inUpload, 17) << "the kills came where they were to come";
+    EXPECT_GE(inUpload, (rounds(15) + 2) / 3) << "the kills came where they were to come";
 }
 
 TEST_P(BooksInTroubleTest, AFullDiskIsOneErrorAndLosesNothing) {
@@ -496,7 +502,7 @@ TEST(BooksInPostgres, SayWhenTheServerIsGoneAndGoOnWhenItIsBackWithAllThatWasCon
     fill(books);
     std::mt19937_64 random(test::seed());
     std::uint64_t next = 1, sent = 1;
-    for (int round = 0; round < 12; ++round) {
+    for (int round = 0; round < rounds(4); ++round) {
         std::atomic<std::uint64_t> pushed = 0;
         const std::uint64_t most = below(random, 8);
         std::thread killer([&, wait = below(random, 3000)] {

@@ -323,7 +323,7 @@ class Arranger {
     }
 
     [[nodiscard]] double gap(std::size_t i, std::size_t j) const {
-        return gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), kLookMm).distanceMm;
+        return gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), kLookMm, &closest_[i][j]).distanceMm;
     }
     /// To the lower teeth that an upper one can meet.
     [[nodiscard]] double gapToLower(std::size_t i) const {
@@ -333,7 +333,8 @@ class Arranger {
             const bool sameSide = sideOf(i) == sideOf(j);
             const int other = static_cast<int>(j % 8);
             if (sameSide ? std::abs(other - place) > 2 : other + place > 1) continue;
-            least = std::min(least, gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), least).distanceMm);
+            least = std::min(
+                least, gapBetween(bodies_[i], poseOf(i), bodies_[j], poseOf(j), least, &closest_[i][j]).distanceMm);
         }
         return least;
     }
@@ -490,6 +491,8 @@ class Arranger {
     std::vector<ToothBody> bodies_;
     std::vector<Member> members_;
     std::array<Place, kToothCount> places_;
+    /// Of each tooth with each other one; sides that are placed at the same time ask for other pairs.
+    mutable std::array<std::array<GapHint, kToothCount>, kToothCount> closest_;
     HeightMap lower_{1.0};
     std::atomic<int> placed_{0};
 };

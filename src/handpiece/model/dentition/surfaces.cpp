@@ -30,7 +30,8 @@ constexpr double kValleyMm = 0.10, kRimMm = 0.45;
 constexpr double kEdgeBevel = 0.2;
 /// A groove's shoulders reach this much farther than where one sees it end.
 constexpr double kShoulders = 1.12;
-constexpr int kCurvePieces = 6;
+/// Between the places along a curve that its nearest point is looked for from.
+constexpr double kPieces = 6.0;
 /// Between the nodes of a field of unevenness; every second one has the longer waves.
 constexpr double kNodesMm = 1.0;
 /// Beyond this from the surface what is carved into it counts no more.
@@ -282,9 +283,10 @@ Anatomy::Anatomy(Spec spec) : spec_(std::move(spec)), crown_(crownOf(spec_)) {
     for (const Crest& c : spec_.crests) {
         Curve curve{c.from, c.by - c.from, c.from - 2.0 * c.by + c.to,     c.round, c.slope,
                     0.0,    -1e9,          0.5 * (c.from + c.to).head<2>()};
-        for (int i = 0; i <= kCurvePieces; ++i) {
-            const double t = static_cast<double>(i) / kCurvePieces;
+        for (std::size_t i = 0; i < curve.along.size(); ++i) {
+            const double t = static_cast<double>(i) / kPieces;
             const Vec3 at = curve.a + 2.0 * t * curve.b + t * t * curve.c;
+            curve.along[i] = at.head<2>();
             curve.topZ = std::max(curve.topZ, at.z());
             curve.reach = std::max(curve.reach, (at.head<2>() - curve.middle).norm());
         }
@@ -388,10 +390,9 @@ double Anatomy::heightOver(const Curve& c, double x, double y, double atLeast) {
     if (c.topZ - c.slope * (std::sqrt(away * away + c.round * c.round) - c.round) < atLeast) return atLeast;
     // The nearest point of the curve as seen from above: the best of some, then Newton.
     double nearest = std::numeric_limits<double>::infinity(), t = 0.0;
-    for (int i = 0; i <= kCurvePieces; ++i) {
-        const double u = static_cast<double>(i) / kCurvePieces;
-        const double squared = ((c.a + 2.0 * u * c.b + u * u * c.c).head<2>() - p).squaredNorm();
-        if (squared < nearest) nearest = squared, t = u;
+    for (std::size_t i = 0; i < c.along.size(); ++i) {
+        const double squared = (c.along[i] - p).squaredNorm();
+        if (squared < nearest) nearest = squared, t = static_cast<double>(i) / kPieces;
     }
     for (int i = 0; i < 3; ++i) {
         const Vec2 off = (c.a + 2.0 * t * c.b + t * t * c.c).head<2>() - p, way = 2.0 * (c.b + t * c.c).head<2>();
@@ -442,8 +443,12 @@ double Anatomy::grooveDepth(const Vec3& p) const {
 double Anatomy::body(const Vec3& p) const {
     double value = crown_.value(p);
     if (!spec_.crests.empty() && p.z() > 0.25 * topZ_) {
-        const double top = kHeightToDistance * (p.z() - occlusalHeight(p.x(), p.y()));
-        value = smoothMax(value, top, spec_.rimRound);
+        // Nowhere is the occlusal surface lower than its ground, but over an edge: down the sides it counts no more.
+        const bool counts = spec_.isEdge || value - kHeightToDistance * (p.z() - spec_.groundZ) < spec_.rimRound;
+        if (counts) {
+            const double top = kHeightToDistance * (p.z() - occlusalHeight(p.x(), p.y()));
+            value = smoothMax(value, top, spec_.rimRound);
+        }
     }
     if (p.z() < 3.0 && roots_.size() > 1) {
         // They pass into each other towards the furcation, and leave the cervix as it is.

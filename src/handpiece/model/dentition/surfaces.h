@@ -4,6 +4,7 @@
 /// A specification as functions of space, negative inside. Private to this room.
 
 #include <algorithm>
+#include <array>
 
 #include "handpiece/model/dentition/anatomy.h"
 
@@ -108,6 +109,7 @@ class Anatomy {
         core::Vec3 a, b, c;  ///< a + 2 b t + c t^2
         double round, slope, reach, topZ;
         core::Vec2 middle;
+        std::array<core::Vec2, 7> along{};  ///< places of it from one end to the other, from above
     };
     struct Bump {
         core::Vec3 centre, inverseRadii;

@@ -14,12 +14,23 @@ using core::Vec3;
 /// A vertex may lie so deep in the other tooth and still be found, however close another one is.
 constexpr double kDepthSeenMm = 1.5;
 
-void closest(const ToothBody& of, const Pose& ofPose, const ToothBody& to, const Pose& toPose, Gap& best) {
+void closest(const ToothBody& of, const Pose& ofPose, const ToothBody& to, const Pose& toPose, Gap& best,
+             std::size_t& closestPoint) {
     const core::Mat3 turn = (toPose.orientation.conjugate() * ofPose.orientation).toRotationMatrix();
     const Vec3 shift = toPose.applyInverse(ofPose.positionMm);
     const auto isBeyond = [&](const Vec3& p, double bound) {
         return ((p - to.box.max).array() > bound).any() || ((to.box.min - p).array() > bound).any();
     };
+    const auto look = [&](std::size_t i, std::uint32_t seed) {
+        const Vec3 p = turn * of.points[i] + shift;
+        const double bound = std::max(best.distanceMm, 0.0);
+        if (isBeyond(p, bound)) return;
+        const geometry::NearestPoint n = to.tree.nearest(p, std::max(bound, kDepthSeenMm), seed);
+        if (n.triangle == geometry::kNoTriangle) return;
+        const double distance = to.tree.side(p, n) * n.distanceMm;
+        if (distance < best.distanceMm) best = {distance, toPose.apply(0.5 * (p + n.pointMm))}, closestPoint = i;
+    };
+    look(closestPoint, geometry::kNoTriangle);
     for (const ToothBody::Cluster& c : of.clusters) {
         // No point of it is nearer, or deeper, than its middle less its radius.
         const Vec3 centre = turn * c.centre + shift;
@@ -29,15 +40,8 @@ void closest(const ToothBody& of, const Pose& ofPose, const ToothBody& to, const
         if (middle.triangle == geometry::kNoTriangle ||
             to.tree.side(centre, middle) * middle.distanceMm - c.radiusMm > best.distanceMm)
             continue;
-        for (std::size_t i = c.begin; i < c.end; ++i) {
-            const Vec3 p = turn * of.points[i] + shift;
-            const double bound = std::max(best.distanceMm, 0.0);
-            if (isBeyond(p, bound)) continue;
-            const geometry::NearestPoint n = to.tree.nearest(p, std::max(bound, kDepthSeenMm), middle.triangle);
-            if (n.triangle == geometry::kNoTriangle) continue;
-            const double distance = to.tree.side(p, n) * n.distanceMm;
-            if (distance < best.distanceMm) best = {distance, toPose.apply(0.5 * (p + n.pointMm))};
-        }
+        for (std::size_t i = c.begin; i < c.end; ++i)
+            look(i, middle.triangle);
     }
 }
 
@@ -79,10 +83,13 @@ ToothBody::ToothBody(const geometry::TriangleMesh& outer)
     addClusters(points, 0, points.size(), clusters);
 }
 
-Gap gapBetween(const ToothBody& a, const Pose& aPose, const ToothBody& b, const Pose& bPose, double boundMm) {
+Gap gapBetween(const ToothBody& a, const Pose& aPose, const ToothBody& b, const Pose& bPose, double boundMm,
+               GapHint* hint) {
+    GapHint none;
+    GapHint& at = hint ? *hint : none;
     Gap best{boundMm, Vec3::Zero()};
-    closest(a, aPose, b, bPose, best);
-    closest(b, bPose, a, aPose, best);
+    closest(a, aPose, b, bPose, best, at.pointOfA);
+    closest(b, bPose, a, aPose, best, at.pointOfB);
     return best;
 }
 

@@ -31,10 +31,15 @@ struct Gap {
     core::Vec3 pointMm;  ///< half-way, in the frame of the poses
 };
 
+/// Which of either's points came closest the last time: looked at first, they bound the search from its beginning.
+struct GapHint {
+    std::size_t pointOfA = 0, pointOfB = 0;
+};
+
 /// Between points of either and the surface of the other: what edges that cross add is far below the triangles' size.
 /// No farther than `boundMm`.
 [[nodiscard]] Gap gapBetween(const ToothBody& a, const core::Pose& aPose, const ToothBody& b, const core::Pose& bPose,
-                             double boundMm);
+                             double boundMm, GapHint* hint = nullptr);
 
 /// The shell of the most faces: crumbs and closed-in hollows go.
 [[nodiscard]] geometry::TriangleMesh largestShell(const geometry::TriangleMesh& mesh);

@@ -71,7 +71,7 @@ class MarkingTest : public ShellTest {
         tasks::Task task;
         task.id = "little";
         task.toothCase = eggTooth(46);
-        task.voxelMm = 0.1;
+        task.voxelMm = 1e-3 * kVoxelUm;
         task.rubric = kLittleRubric;
         tasks::writeTask(task, exercise());
         std::filesystem::create_directories(works());

@@ -40,7 +40,7 @@ class PracticeTest : public ShellTest {
                                        const std::function<void(tasks::Task&)>& change = {}) {
         tasks::Task task = course::blockTask("line", 1);
         task.id = id;
-        task.voxelMm = 0.1;
+        task.voxelMm = 1e-3 * kVoxelUm;
         task.ownJudgement = asksFirst;
         task.rubric = rubric::shippedRubricText("dexterity-line");
         task.toothCase.exercise->title = {{"en", std::string("Line ") + id}, {"ja", "直線"}};

@@ -25,14 +25,14 @@ TEST_F(PracticeTest, FromTheChoiceToTheResultAndAgain) {
     ASSERT_NE(exercises().ideal(), nullptr);
     begin("one");
     // Its voxel, its burs and its locks hold; a setting of the student's own is refused, and told of.
-    EXPECT_EQ(simulator().voxelUm(), 100);
+    EXPECT_EQ(simulator().voxelUm(), kVoxelUm);
     EXPECT_FALSE(action("actionUndo")->isEnabled());
     EXPECT_TRUE(simulator().permissions().allowsBur("330"));
     EXPECT_FALSE(simulator().permissions().allowsBur("round-8"));
     simulator().setVoxel(50);
     ASSERT_NE(window().errorDialog(), nullptr);
     window().errorDialog()->reject();
-    EXPECT_EQ(simulator().voxelUm(), 100);
+    EXPECT_EQ(simulator().voxelUm(), kVoxelUm);
     ASSERT_TRUE(waitFor([this] { return window().errorDialog() == nullptr; }));
     ASSERT_TRUE(cut());
     ASSERT_TRUE(simulator().isUnsaved());

@@ -33,6 +33,9 @@ inline bool waitFor(const std::function<bool()>& what) {
     return QTest::qWaitFor(what, 300000);
 }
 
+/// Coarse: most of what these tests cost is the making of fields and surfaces.
+inline constexpr int kVoxelUm = 200;
+
 /// One that is kept, or made, without a mouth around it.
 inline Starter aloneTooth(int fdi) {
     return {fdi, {}, 4000, false};
@@ -85,7 +88,7 @@ class ShellTest : public ::testing::Test {
         options.starter = aloneTooth(46);
         options.sound = false;
         options.realTime = false;
-        options.voxelUm = 100;
+        options.voxelUm = kVoxelUm;
         return options;
     }
     void start(const CommandLine& line = {}) {

@@ -242,8 +242,18 @@ TEST_F(ShellTest, ACaseThatVanishesIsSavedWithTheAttempt) {
     EXPECT_NEAR(removedMm3(), cutMm3, 1e-9);
 }
 
+/// Where figures of two ways are held against each other.
+class FinerShellTest : public ShellTest {
+  protected:
+    [[nodiscard]] Simulator::Options options() const override {
+        Simulator::Options finer = ShellTest::options();
+        finer.voxelUm = 100;
+        return finer;
+    }
+};
+
 // At voxels where the bands of the field are no longer the usual ones.
-TEST_F(ShellTest, AnAttemptGoesFromTheWindowToTheCommandLineAndBack) {
+TEST_F(FinerShellTest, AnAttemptGoesFromTheWindowToTheCommandLineAndBack) {
     startWithTooth();
     ASSERT_TRUE(cut());
     file_ = own_.filePath("window.handpiece");
@@ -396,7 +406,7 @@ TEST_F(ShellTest, LoadAndStopOfThePanelHoldForTheToothThatComesBack) {
     EXPECT_DOUBLE_EQ(*view()->hand()->stopMm(), 1.2);
 }
 
-TEST_F(ShellTest, PanelsFollowAReplayBackAndForth) {
+TEST_F(FinerShellTest, PanelsFollowAReplayBackAndForth) {
     startWithTooth();
     ASSERT_TRUE(cut());
     simulator().setDrive(QStringLiteral("low-speed"));

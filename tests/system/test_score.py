@@ -18,8 +18,9 @@ from support import HANDPIECE, SystemTest, rows_of, run
 RUBRICS = pathlib.Path(__file__).resolve().parents[2] / "data" / "rubrics"
 
 
-# A class I cavity in a third of its usual time.
-CUT = ("--bur", "330", "--motion", "class-one", "--speed", 6, "--voxel", 100)
+# Coarse, and a class I cavity in a third of its usual time: each of some forty runs cuts it again.
+VOXEL_UM = 140
+CUT = ("--bur", "330", "--motion", "class-one", "--speed", 6, "--voxel", VOXEL_UM)
 
 
 class Score(SystemTest):
@@ -36,7 +37,7 @@ class Score(SystemTest):
             if made.returncode != 0:
                 raise AssertionError(made.stderr)
 
-    def exercise(self, name, *arguments, voxel_um=100):
+    def exercise(self, name, *arguments, voxel_um=VOXEL_UM):
         path = self.folder / name
         self.ok("exercise", "new", "--case", self.tooth, "--preparation", "class-one", "--id", name, "--voxel", voxel_um,
                 "--out", path, *arguments)
@@ -94,7 +95,7 @@ class Score(SystemTest):
         self.assertFalse(self.score(self.cut / "session.h5", exercise, "--no-replay")["proven"])
 
         finer = self.exercise("finer", "--rubric", RUBRICS / "46-class-i.toml", voxel_um=90)
-        self.refused("score", self.cut / "session.h5", "--exercise", finer, mentions=("voxel", "100"))
+        self.refused("score", self.cut / "session.h5", "--exercise", finer, mentions=("voxel", str(VOXEL_UM)))
         other = self.folder / "block"
         self.ok("make", "block", "--kind", "line", "--rubric", RUBRICS / "dexterity-line.toml", "--out", other)
         self.refused("score", self.cut / "attempt", "--exercise", other, mentions=("another tooth",))
@@ -109,9 +110,9 @@ class Score(SystemTest):
         draw = random.Random(seed)
         exercise = self.exercise("one", "--rubric", RUBRICS / "46-class-i.toml")
         hand = ("time", "path", "smoothness")
-        for number in range(2):
+        for number in range(int(os.environ.get("HANDPIECE_WORKS", 1))):
             cut = self.folder / f"cut{number}"
-            self.ok("run", "--case", exercise / "case", "--bur", draw.choice(["330", "245"]), "--motion", "class-one", "--voxel", 100,
+            self.ok("run", "--case", exercise / "case", "--bur", draw.choice(["330", "245"]), "--motion", "class-one", "--voxel", VOXEL_UM,
                     "--depth", round(draw.uniform(0.6, 2.2), 3), "--isthmus", round(draw.uniform(1.1, 2.0), 3),
                     "--tremor", round(draw.uniform(0, 150)), "--seed", draw.randrange(1000), "--duration", 12, "--speed", 6, "--out", cut)
 

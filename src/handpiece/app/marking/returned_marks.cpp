@@ -17,12 +17,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kFormat = 1;
-constexpr std::size_t kMaxText = 4000, kMaxMarkerBytes = 60, kMaxList = 1000;
+constexpr int kReturnedFormat = 1;
+constexpr std::size_t kMaxReturnedText = 4000, kMaxReturnedMarkerBytes = 60, kMaxList = 1000;
 /// More than any rubric gives, and far under where a picture of it ends.
 constexpr double kMostPoints = 1e6, kMostMm = 1e4, kMostS = 1e6;
 
-std::string textIn(const Json& json, std::size_t most = kMaxText) {
+std::string boundedText(const Json& json, std::size_t most = kMaxReturnedText) {
     std::string text = json.get<std::string>();
     if (text.size() > most) throw std::length_error("a text is too long");
     return text;
@@ -54,8 +54,8 @@ Json toJson(const Comment& c) {
 
 Comment commentOf(const Json& one) {
     Comment c;
-    c.text = textIn(one.at("text"));
-    if (one.contains("criterion")) c.criterion = textIn(one.at("criterion"), 200);
+    c.text = boundedText(one.at("text"));
+    if (one.contains("criterion")) c.criterion = boundedText(one.at("criterion"), 200);
     if (one.contains("xyz_mm")) {
         const Json& place = one.at("xyz_mm");
         if (!place.is_array() || place.size() != 3) throw std::length_error("a place has three numbers");
@@ -81,26 +81,26 @@ score::Passed passedIn(const Json& json) {
 
 ReturnedMarks marksOf(const Json& json) {
     ReturnedMarks marks;
-    marks.marker = textIn(json.at("marker"), kMaxMarkerBytes);
-    marks.exercise = textIn(json.at("exercise"), 200);
+    marks.marker = boundedText(json.at("marker"), kMaxReturnedMarkerBytes);
+    marks.exercise = boundedText(json.at("exercise"), 200);
     marks.exerciseHash = hashIn(json.at("exercise_hash"));
     marks.stateHash = hashIn(json.at("state_hash"));
     for (const Json& hash : listIn(json.at("session_hash")))
         marks.sessionHashes.push_back(hashIn(hash));
-    marks.rubric = textIn(json.at("rubric"), 200);
+    marks.rubric = boundedText(json.at("rubric"), 200);
     marks.rubricHash = hashIn(json.at("rubric_hash"));
     marks.maxScore = numberIn(json.at("max_score"), 0.0, kMostPoints);
     marks.score = numberIn(json.at("score"), 0.0, marks.maxScore);
     marks.passed = passedIn(json.at("passed"));
-    if (json.contains("decision")) marks.decision = textIn(json.at("decision"));
+    if (json.contains("decision")) marks.decision = boundedText(json.at("decision"));
     for (const Json& one : listIn(json.at("changes"))) {
         ReturnedMarks::Change c;
-        c.criterion = textIn(one.at("criterion"), 200);
-        if (one.contains("band")) c.band = textIn(one.at("band"), 200);
+        c.criterion = boundedText(one.at("criterion"), 200);
+        if (one.contains("band")) c.band = boundedText(one.at("band"), 200);
         c.maxPoints = numberIn(one.at("max_points"), 0.0, kMostPoints);
         if (one.contains("points")) c.points = numberIn(one.at("points"), 0.0, c.maxPoints);
         c.isCritical = one.value("critical", false);
-        c.reason = textIn(one.at("reason"));
+        c.reason = boundedText(one.at("reason"));
         marks.changes.push_back(std::move(c));
     }
     for (const Json& one : listIn(json.at("comments")))
@@ -149,7 +149,7 @@ bool areOf(const ReturnedMarks& marks, const score::Identity& work) {
 
 std::string returnedJson(const ReturnedMarks& marks) {
     Json json = {{"handpiece", kReturnedKind},
-                 {"format", kFormat},
+                 {"format", kReturnedFormat},
                  {"marker", marks.marker},
                  {"exercise", marks.exercise},
                  {"exercise_hash", marks.exerciseHash},
@@ -188,9 +188,10 @@ ReturnedMarks parseReturned(std::string_view text, const std::string& where) {
         if (json.at("handpiece").get<std::string>() != kReturnedKind) throw wrong("it is something else");
         const auto* const format = json.at("format").get_ptr<const Json::number_integer_t*>();
         if (format == nullptr || *format < 1) throw wrong("its format is none");
-        if (*format > kFormat)
-            throw core::Error(fmt::format("these marks have format {}, and this program reads {}", *format, kFormat),
-                              where, "use the newer program")
+        if (*format > kReturnedFormat)
+            throw core::Error(
+                fmt::format("these marks have format {}, and this program reads {}", *format, kReturnedFormat), where,
+                "use the newer program")
                 .as("returned-newer");
         return marksOf(json);
     } catch (const core::Error&) {

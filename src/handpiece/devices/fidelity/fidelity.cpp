@@ -12,6 +12,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/clock.h"
+#include "handpiece/base/rt/second.h"
 #include "handpiece/base/rt/spsc_queue.h"
 #include "handpiece/devices/fidelity/recording.h"
 #include "handpiece/devices/link/passing_driver.h"
@@ -20,8 +21,7 @@ namespace handpiece::fidelity {
 namespace {
 
 using core::Vec3;
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kFirstFrameS = 5.0;      // a device that tells no pose in this time tells none
 constexpr double kWarmUpS = 0.5;          // the gate's fade-in and something
 constexpr double kPulseN = 0.8;           // under what an Omni-class arm may hold for long (0.88 N [R])

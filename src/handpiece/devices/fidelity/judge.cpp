@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/base/rt/second.h"
 #include "handpiece/devices/fidelity/recording.h"
 
 namespace handpiece::fidelity {
 namespace {
 
 using config::phrase, config::verbatim;
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 // OpenHaptics Programmer's Guide: at least 1000 Hz for stability, as low as 500 on some devices, not recommended.
 constexpr double kGoodHz = 1000.0, kMinHz = 500.0;
 constexpr double kGoodLateShare = 0.001, kMaxLateShare = 0.01;

@@ -7,12 +7,12 @@
 #include <cmath>
 #include <optional>
 
+#include "handpiece/base/rt/second.h"
 #include "handpiece/devices/fidelity/recording.h"
 
 namespace handpiece::fidelity {
 namespace {
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kBeforeS = 0.010, kAfterS = 0.030;  // of a pulse, that are looked at
 constexpr double kMinSteps = 1.5, kMaxSteps = 60.0;
 constexpr double kMinPathSteps = 5.0;                           // a pulse that moves the arm less says nothing of time

@@ -9,6 +9,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/rt/second.h"
 #include "handpiece/tick/device/capability.h"
 
 namespace handpiece::safety {
@@ -18,8 +19,7 @@ using link::DeviceFault;
 using link::DriverCommand;
 using link::DriverReading;
 using Triple = std::array<double, 3>;
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kMaxMm = 1e4, kMaxN = 1e6;  // beyond these a number is no place and no force
 constexpr double kUnitWithin = 0.01;         // of a quaternion's length
 constexpr double kJitterMm = 1.0;            // two readings close in time may differ by this all the same

@@ -11,6 +11,7 @@
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/clock.h"
 #include "handpiece/base/rt/realtime_thread.h"
+#include "handpiece/base/rt/second.h"
 #include "handpiece/base/rt/staged.h"
 #include "handpiece/devices/safety/guard_servo.h"
 
@@ -19,8 +20,7 @@ namespace {
 
 using core::Vec3;
 using link::DeviceFault;
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kFreeS = 0.05;              // without a force wanted: the bur is free, the clutch is honoured
 constexpr std::int64_t kLookNs = 1'000'000;  // of the watchdog
 constexpr int kWatchdogPriority = 85;        // above the servo and the tick, which it watches

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "handpiece/base/core/portable_math.h"
+#include "handpiece/base/rt/second.h"
 #include "handpiece/devices/link/passing_driver.h"
 #include "handpiece/devices/safety/guard_servo.h"
 
@@ -18,11 +19,10 @@ using link::DriverCommand;
 using link::DriverReading;
 
 namespace {
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kJumpMm = 100.0;
 
-double length(const std::array<double, 3>& v) noexcept {
+double lengthOf(const std::array<double, 3>& v) noexcept {
     return core::hypot(v[0], v[1], v[2]);
 }
 
@@ -98,7 +98,7 @@ class FaultyDriver final : public link::PassingDriver {
             FaultOutcome& outcome = log_->outcomes_[begun_];
             outcome.fault = faults_[begun_];
             outcome.beganNs = startNs_ + static_cast<std::int64_t>(std::llround(faults_[begun_].atS * kNsPerS));
-            outcome.forceBeforeN = outcome.largestN = length(last_.forceN);
+            outcome.forceBeforeN = outcome.largestN = lengthOf(last_.forceN);
             ++begun_;
             log_->begun_.store(begun_, std::memory_order_release);
         }
@@ -151,7 +151,7 @@ class FaultyDriver final : public link::PassingDriver {
     }
 
     void note(std::int64_t timeNs, bool answered) noexcept {
-        const double force = length(last_.forceN);
+        const double force = lengthOf(last_.forceN);
         GateOutput& output = log_->output_;
         output.largestN = std::max(output.largestN, force);
         const bool doubtful = guard_ && guard_->gateStatus().trouble != DeviceFault::none;

@@ -10,6 +10,7 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/rt/clock.h"
+#include "handpiece/base/rt/second.h"
 #include "handpiece/base/rt/staged.h"
 #include "handpiece/devices/safety/guard_servo.h"
 #include "handpiece/tick/device/passing_device.h"
@@ -19,8 +20,7 @@ namespace {
 
 using core::Vec3;
 using link::DeviceFault;
-
-constexpr double kNsPerS = 1e9;
+using rt::kNsPerS;
 constexpr double kPedalUp = 0.05;  // nobody stands on it
 
 /// What the gate is to look at: poses and times as everywhere, with an input's own patience; shaking needs no fading.

@@ -21,7 +21,7 @@ using core::Quat;
 using core::Vec3;
 using geometry::TriangleMesh;
 
-constexpr double kSampleMm = 0.5, kReachMm = 3.0;
+constexpr double kLieSampleMm = 0.5, kReachMm = 3.0;
 constexpr std::size_t kMostSamples = 1200;
 constexpr int kRounds = 30;
 /// Of the average tooth's surface: how far that of another person lies off it, and how many of its points tell on
@@ -33,19 +33,19 @@ constexpr double kTurnRad = 0.25, kSizeShare = 0.15;
 constexpr double kRootWeight = 0.25;
 constexpr double kMostMisfitMm = 0.6, kLeastShare = 0.7, kLeastCos = 0.77;  // 40 degrees
 
-struct Sample {
+struct SurfaceSample {
     Vec3 at, normal;
     double weight = 1.0;
 };
 
-std::vector<Sample> samplesOf(const TriangleMesh& mesh) {
+std::vector<SurfaceSample> samplesOf(const TriangleMesh& mesh) {
     std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
     for (const geometry::Triangle& t : mesh.triangles) {
         const Vec3 n = (mesh.vertices[t[1]] - mesh.vertices[t[0]]).cross(mesh.vertices[t[2]] - mesh.vertices[t[0]]);
         for (const std::uint32_t v : t)
             normals[v] += n;
     }
-    std::vector<Sample> samples;
+    std::vector<SurfaceSample> samples;
     const std::size_t step = mesh.vertices.size() / kMostSamples + 1;
     for (std::size_t v = 0; v < mesh.vertices.size(); v += step)
         if (normals[v].norm() > 0.0)
@@ -76,7 +76,8 @@ struct Meeting {
     Vec3 normal = Vec3::Zero();
 };
 
-std::vector<Meeting> meet(const geometry::TriangleTree& tree, const std::vector<Sample>& samples, const Laid& laid) {
+std::vector<Meeting> meet(const geometry::TriangleTree& tree, const std::vector<SurfaceSample>& samples,
+                          const Laid& laid) {
     std::vector<Meeting> meetings(samples.size());
     core::parallelFor(samples.size(), 64, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
@@ -99,10 +100,10 @@ std::optional<Lie> lieOf(int fdiNumber, const TriangleMesh& surface, const core:
     geometry::IsosurfaceSettings settings;
     settings.lipschitz = dentition::ToothForm::kLipschitz;
     settings.usualSlope = 1.0;
-    settings.spacingMm = kSampleMm;
+    settings.spacingMm = kLieSampleMm;
     const TriangleMesh average = geometry::isosurface(
         form.bounds(), [&](const Vec3& p) { return form.outer(p); }, settings);
-    const std::vector<Sample> samples = samplesOf(average);
+    const std::vector<SurfaceSample> samples = samplesOf(average);
     const TriangleMesh tooth = geometry::transformed(surface, roughly);
     const geometry::TriangleTree tree(tooth);
 

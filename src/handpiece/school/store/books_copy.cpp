@@ -54,20 +54,6 @@ std::vector<Column> columnsOf(Database& database, const std::string& table) {
     return all;
 }
 
-void addEscaped(std::string& line, std::string_view text) {
-    for (const char c : text)
-        if (c == '\t')
-            line += "\\t";
-        else if (c == '\n')
-            line += "\\n";
-        else if (c == '\r')
-            line += "\\r";
-        else if (c == '\\')
-            line += "\\\\";
-        else
-            line += c;
-}
-
 void addCell(std::string& line, const Database::Rows& rows, int at, char kind) {
     if (rows.isNothing(at))
         line += "\\N";

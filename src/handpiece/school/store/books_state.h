@@ -105,4 +105,7 @@ struct Books::State {
     }
 };
 
+/// A cell of a row in a text: what would end it is written as \t, \n, \r and \\.
+void addEscaped(std::string& line, std::string_view text);
+
 }  // namespace handpiece::school

@@ -167,6 +167,8 @@ BookTable read(Database& database, const Listed& listed, const std::string* pers
     return table;
 }
 
+}  // namespace
+
 void addEscaped(std::string& all, std::string_view text) {
     for (const char c : text)
         switch (c) {
@@ -186,8 +188,6 @@ void addEscaped(std::string& all, std::string_view text) {
                 all += c;
         }
 }
-
-}  // namespace
 
 std::string asText(const std::vector<BookTable>& tables) {
     std::string all;

@@ -11,6 +11,7 @@
 #include "handpiece/base/core/portable_math.h"
 #include "handpiece/base/core/rotation.h"
 #include "handpiece/tick/device/capability.h"
+#include "handpiece/tick/device/units.h"
 
 namespace handpiece::device {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 using core::Quat;
 using core::Vec3;
 
-constexpr double kKgPerUnit = 1e3;      // 1 N s2/mm is 1000 kg
 constexpr double kMaxPeriodS = 0.05;    // a machine that slept longer costs no more steps than this
 constexpr double kMaxLoadShare = 0.95;  // of the device's largest force: the tooth must be able to hold the hand
 constexpr double kMaxPlaceMm = 1e4;     // farther away nobody points

@@ -8,13 +8,13 @@
 
 #include "handpiece/base/core/error.h"
 #include "handpiece/tick/device/capability.h"
+#include "handpiece/tick/device/units.h"
 
 namespace handpiece::device {
 namespace {
 
 using core::Vec3;
 
-constexpr double kKgPerUnit = 1e3;    // 1 N s2/mm is 1000 kg
 constexpr double kMaxDelayS = 0.05;   // fits the ring of commands at 8 kHz
 constexpr double kSameTimeS = 1e-10;  // sums of periods differ by rounding
 

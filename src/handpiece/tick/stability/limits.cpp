@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "handpiece/base/core/error.h"
+#include "handpiece/tick/device/units.h"
 
 namespace handpiece::stability {
 namespace {
@@ -20,7 +21,8 @@ struct Hand {
 constexpr std::array<Hand, 3> kHands{{{0.01, 0.0005, 0.05}, {0.05, 0.003, 0.3}, {0.10, 0.010, 1.0}}};
 constexpr std::array<double, 6> kDamping{0.0, 0.0005, 0.001, 0.002, 0.005, 0.01};
 constexpr double kSoftest = 0.02, kHardest = 20.0, kStep = 1.12, kShare = 0.8;
-constexpr double kKgPerUnit = 1e3, kSubStepS = 50e-6, kApproachMmS = 60.0, kAboveMm = 0.3, kRestS = 0.9, kWindowS = 0.3;
+using device::kKgPerUnit;
+constexpr double kSubStepS = 50e-6, kApproachMmS = 60.0, kAboveMm = 0.3, kRestS = 0.9, kWindowS = 0.3;
 constexpr double kDampingRampMm = 0.05, kRoundingNmm = 1e-9;
 
 /// One tap of a wall at x = 0 from above and the rest that follows; true when it is passive and comes to rest.

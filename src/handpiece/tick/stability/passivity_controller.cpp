@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "handpiece/tick/device/units.h"
+
 namespace handpiece::stability {
 namespace {
 
 using core::Vec3;
 
 /// 1 N s^2/mm is 1000 kg.
-constexpr double kKgPerUnit = 1e3;
+using device::kKgPerUnit;
 /// Of step/2 TV(F); the rest covers what the tracker does not see.
 constexpr double kBudgetShare = 0.5;
-constexpr double kVelocityTauS = 0.002;
+constexpr double kHandVelocityTauS = 0.002;
 /// A force that has stood for so long is held against by the hand.
 constexpr double kHeldTauS = 0.04;
 constexpr double kNoForceN2 = 1e-12;
@@ -22,7 +24,7 @@ constexpr double kHandKg = 0.01;
 /// From no force to all of it, after the tank was empty: no click.
 constexpr double kRiseS = 0.005;
 /// Of the largest stiffness: softer than any tissue that is rendered. No spring of that stiffness holds more energy.
-constexpr double kSoftest = 0.02;
+constexpr double kSoftestShare = 0.02;
 constexpr double kUsualPeriodS = 1e-3, kMinPeriodS = 1e-5;
 constexpr int kHalvings = 14;
 constexpr std::size_t kMaxCatchUp = 16;
@@ -69,7 +71,7 @@ void PassivityController::push(const Vec3& force) noexcept {
 /// A tracker that believes its own velocity as long as the encoder's step allows it.
 void PassivityController::advance(const Vec3& readMm) noexcept {
     const double half = 0.5 * device_.encoderStepMm;
-    const double gain = periodS_ / (kVelocityTauS + periodS_);
+    const double gain = periodS_ / (kHandVelocityTauS + periodS_);
     const Vec3 last = position_;
     // What the hand holds against for long moves nothing: only a force that is new does.
     const Vec3& acting = sent(lags_ - 1);
@@ -93,7 +95,7 @@ void PassivityController::advance(const Vec3& readMm) noexcept {
 
 /// What the forces that acted over the last period have done.
 void PassivityController::settle() noexcept {
-    const double spring = 0.5 / (kSoftest * device_.stiffnessNPerMm);
+    const double spring = 0.5 / (kSoftestShare * device_.stiffnessNPerMm);
     for (std::size_t h = 0; h < lags_; ++h) {
         const std::size_t at = (head_ - h) & (kRing - 1);
         stored_[h] += kBudgetShare * 0.5 * device_.encoderStepMm * change_[at] - sent_[at].dot(moved_);

@@ -12,7 +12,7 @@ namespace {
 
 using core::Vec3;
 
-constexpr double kMaxScale = 2.0, kUsualPeriodS = 1e-3;
+constexpr double kMaxScale = 2.0, kPeriodWithoutS = 1e-3;
 
 PassivityController::Device deviceOf(const ShaperSettings& s) noexcept {
     return {s.encoderStepMm, s.delayS, s.massKg, s.stiffnessNPerMm};
@@ -61,7 +61,7 @@ void Shaper::setSettings(const ShaperSettings& s) noexcept {
 Vec3 Shaper::shape(const Vec3& positionMm, const Vec3& wantedN, double periodS, bool fresh) noexcept {
     if (!(periodS > 0.0) || !std::isfinite(periodS)) {
         fresh = true;
-        periodS = kUsualPeriodS;
+        periodS = kPeriodWithoutS;
     }
     const bool known = positionMm.allFinite();
     Vec3 force = wantedN.allFinite() && known ? Vec3(settings_.forceScale * wantedN) : Vec3(Vec3::Zero());

@@ -48,10 +48,6 @@ struct ExamOptions {
     bool isNew = false;
 };
 
-school::Act now() {
-    return {"server", school_server::systemClock()()};
-}
-
 Milliseconds momentIn(const std::string& text) {
     std::tm time{};
     char zone = 0, rest = 0;

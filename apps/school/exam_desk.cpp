@@ -26,9 +26,9 @@ std::string plain(std::string text) {
     return text.substr(0, 1000);
 }
 
-class Line {
+class DeskLine {
   public:
-    explicit Line(const std::filesystem::path& socket) : socket_(socket), http_(socket.string()) {
+    explicit DeskLine(const std::filesystem::path& socket) : socket_(socket), http_(socket.string()) {
         http_.set_address_family(AF_UNIX);
         http_.set_read_timeout(60);
         http_.set_write_timeout(60);
@@ -85,35 +85,35 @@ Desk deskFrom(std::string_view text) {
 }
 
 Desk ExamClient::desk() const {
-    return deskFrom(Line(socket_).get("/desk"));
+    return deskFrom(DeskLine(socket_).get("/desk"));
 }
 
 std::string ExamClient::look(const std::string& candidate) const {
-    return Line(socket_).post("/look", {{"candidate", candidate}});
+    return DeskLine(socket_).post("/look", {{"candidate", candidate}});
 }
 
 void ExamClient::open(const std::string& code) const {
-    (void)Line(socket_).post("/open", {{"code", code}});
+    (void)DeskLine(socket_).post("/open", {{"code", code}});
 }
 
 Desk ExamClient::begin(const std::string& candidate, const std::string& invigilator, const std::string& pin) const {
     return deskFrom(
-        Line(socket_).post("/begin", {{"candidate", candidate}, {"invigilator", invigilator}, {"pin", pin}}));
+        DeskLine(socket_).post("/begin", {{"candidate", candidate}, {"invigilator", invigilator}, {"pin", pin}}));
 }
 
 void ExamClient::keepExercise(const std::filesystem::path& file) const {
-    core::writeFile(file, Line(socket_).get("/exercise"));
+    core::writeFile(file, DeskLine(socket_).get("/exercise"));
 }
 
 void ExamClient::checkpoint(const std::string& sitting, std::int64_t part, std::int64_t ticks,
                             const std::string& inputs) const {
-    (void)Line(socket_).post(
+    (void)DeskLine(socket_).post(
         "/checkpoint",
         {{"sitting", sitting}, {"part", std::to_string(part)}, {"ticks", std::to_string(ticks)}, {"inputs", inputs}});
 }
 
 std::string ExamClient::finish(const std::string& sitting, const std::vector<std::filesystem::path>& recordings) const {
-    Line line(socket_);
+    DeskLine line(socket_);
     std::int64_t part = 0;
     for (const std::filesystem::path& file : recordings) {
         proving::RecordedInputs inputs(file);
@@ -125,15 +125,15 @@ std::string ExamClient::finish(const std::string& sitting, const std::vector<std
 }
 
 void ExamClient::giveUp(const std::string& sitting, const std::string& invigilator, const std::string& pin) const {
-    (void)Line(socket_).post("/give-up", {{"sitting", sitting}, {"invigilator", invigilator}, {"pin", pin}});
+    (void)DeskLine(socket_).post("/give-up", {{"sitting", sitting}, {"invigilator", invigilator}, {"pin", pin}});
 }
 
 std::string ExamClient::ending(const std::string& sitting) const {
-    return Line(socket_).get("/ending?sitting=" + sitting);
+    return DeskLine(socket_).get("/ending?sitting=" + sitting);
 }
 
 std::string ExamClient::receipt(const std::string& sitting) const {
-    return Line(socket_).get("/receipt?sitting=" + sitting);
+    return DeskLine(socket_).get("/receipt?sitting=" + sitting);
 }
 
 }  // namespace handpiece::school_exam

@@ -35,7 +35,7 @@ struct Free {
         free(thing);
     }
 };
-using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
+using PublicKey = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 using KeyContext = std::unique_ptr<EVP_PKEY_CTX, Free<EVP_PKEY_CTX_free>>;
 using Digest = std::unique_ptr<EVP_MD_CTX, Free<EVP_MD_CTX_free>>;
 using Number = std::unique_ptr<BIGNUM, Free<BN_free>>;
@@ -93,7 +93,7 @@ std::string textIn(const Json& json, const char* key) {
     return found != json.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-Key keyOf(const Json& jwk) {
+PublicKey keyOf(const Json& jwk) {
     const auto n = decoded(textIn(jwk, "n")), e = decoded(textIn(jwk, "e"));
     if (!n || !e || n->empty() || e->empty() || n->size() > kMostBits / 8 || e->size() > 8) return nullptr;
     const Number modulus(BN_bin2bn(n->data(), static_cast<int>(n->size()), nullptr)),
@@ -109,7 +109,7 @@ Key keyOf(const Json& jwk) {
     if (!parameters || !context || EVP_PKEY_fromdata_init(context.get()) != 1 ||
         EVP_PKEY_fromdata(context.get(), &key, EVP_PKEY_PUBLIC_KEY, parameters.get()) != 1)
         return nullptr;
-    return Key(key);
+    return PublicKey(key);
 }
 
 Bytes numberOfKey(const EVP_PKEY* key, const char* which) {
@@ -124,13 +124,13 @@ Bytes numberOfKey(const EVP_PKEY* key, const char* which) {
 }  // namespace
 
 struct RsaKey::State {
-    Key key;
+    PublicKey key;
     std::string id;
 };
 
 RsaKey::RsaKey(const std::filesystem::path& pem) : state_(std::make_unique<State>()) {
     if (!core::isThere(pem)) {
-        const Key made(EVP_RSA_gen(kLeastBits));
+        const PublicKey made(EVP_RSA_gen(kLeastBits));
         const Bio text(BIO_new(BIO_s_mem()));
         if (!made || !text ||
             PEM_write_bio_PrivateKey(text.get(), made.get(), nullptr, nullptr, 0, nullptr, nullptr) != 1)
@@ -208,7 +208,7 @@ std::string claimsOf(std::string_view token, std::string_view keySet) {
             (jwk.contains("alg") && textIn(jwk, "alg") != "RS256") ||
             (jwk.contains("use") && textIn(jwk, "use") != "sig"))
             continue;
-        const Key key = keyOf(jwk);
+        const PublicKey key = keyOf(jwk);
         if (!key) continue;
         const Digest digest(EVP_MD_CTX_new());
         if (digest && EVP_DigestVerifyInit(digest.get(), nullptr, EVP_sha256(), nullptr, key.get()) == 1 &&

@@ -31,14 +31,14 @@ bool finish(Books& books, const Job& job, school::Score score, const std::string
     return books.finish(job, score);
 }
 
-struct Found {
+struct FoundWork {
     std::optional<school::PushedAttempt> attempt{};
     std::optional<school::Pack> pack{};
     std::optional<school::RubricVersion> rubric{};
     std::string lacks{};  ///< why it cannot be done; empty: all of them are there
 };
-Found foundOf(const Books& books, const Job& job) {
-    Found found{books.attempt(job.attempt)};
+FoundWork foundOf(const Books& books, const Job& job) {
+    FoundWork found{books.attempt(job.attempt)};
     if (!found.attempt) {
         found.lacks = "the attempt is gone";
         return found;
@@ -110,7 +110,7 @@ std::unique_ptr<WorkSource> worksOf(BooksPlace place, std::function<Milliseconds
 
 std::optional<TakenJob> takeJob(Books& books, const std::string& worker, Milliseconds now) {
     while (const std::optional<Job> job = books.takeJob(worker, now, kLeaseMs)) {
-        const Found found = foundOf(books, *job);
+        const FoundWork found = foundOf(books, *job);
         if (found.lacks.empty())
             return TakenJob{*job,
                             sandboxed::questionOf(*found.attempt, found.rubric->text, examNotes(books, *found.attempt)),
@@ -121,7 +121,7 @@ std::optional<TakenJob> takeJob(Books& books, const std::string& worker, Millise
 }
 
 std::vector<std::string> filesOf(const Books& books, const Job& job) {
-    Found found = foundOf(books, job);
+    FoundWork found = foundOf(books, job);
     if (!found.lacks.empty()) return {};
     found.attempt->files.push_back(found.pack->file);
     return found.attempt->files;

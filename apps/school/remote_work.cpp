@@ -25,7 +25,7 @@ using school_station::Line;
 constexpr std::uint64_t kMostBytes = 2ull << 30;
 /// The server reads the recordings itself before it answers a proof. Nothing else is waited for so long.
 constexpr std::chrono::minutes kProofPatience{10};
-constexpr int kPatience = 5;  // leases
+constexpr int kPatienceLeases = 5;  // leases
 
 /// There as long as this is; of the user's alone.
 class WorkFolder {
@@ -103,7 +103,7 @@ class RemoteWork final : public LentWork {
     /// A server that is out of reach is asked again, for as long as it may keep the work.
     template <class Ask>
     void untilHeard(const core::Progress& progress, Ask ask) {
-        const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatience * work_.leaseMs);
+        const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kPatienceLeases * work_.leaseMs);
         for (;;) {
             try {
                 return ask();

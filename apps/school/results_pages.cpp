@@ -43,15 +43,15 @@ std::vector<Seen> seenOf(const Visit& v, std::vector<Outcome> outcomes) {
 }
 
 /// What may be compared: exercise and rubric by hash, device, motion scale.
-using Key = std::tuple<std::string, std::string, std::string, double>;
+using GroupKey = std::tuple<std::string, std::string, std::string, double>;
 struct Group {
     std::string exercise, device;
     std::map<std::string, std::vector<double>> percents;  ///< by person, in the order of the attempts
 };
 
 /// Of work that the server scored whole.
-std::map<Key, Group> groupsOf(const std::vector<Seen>& outcomes) {
-    std::map<Key, Group> groups;
+std::map<GroupKey, Group> groupsOf(const std::vector<Seen>& outcomes) {
+    std::map<GroupKey, Group> groups;
     for (const Seen& one : outcomes) {
         if (!one.score || one.score->state != "proven" || !(one.score->maxScore > 0.0)) continue;
         const school::Attempt& a = one.pushed.attempt;
@@ -308,7 +308,7 @@ Page resultsOfClass(const Visit& v, const std::string& schoolClass, const std::s
         if (one.id == schoolClass) name = one.name;
     HtmlReport page = report::sitePage(words()("school-teaching.results-of", name), lookerOf(v));
     page.link("/classes/" + schoolClass, words()("school-teaching.back-to-class"));
-    const std::map<Key, Group> groups = groupsOf(seenOf(v, Teaching(v.books).outcomes(schoolClass, false)));
+    const std::map<GroupKey, Group> groups = groupsOf(seenOf(v, Teaching(v.books).outcomes(schoolClass, false)));
     if (groups.empty()) page.paragraph(words()("class.no-results"), Tone::missing);
     for (const auto& [key, group] : groups) {
         page.heading(words()("school-teaching.curve-of", group.exercise));
@@ -341,7 +341,7 @@ Page curvesOf(const Visit& v, const std::string& person, const std::string& home
     const std::string shown = one && !one->name.empty() ? one->name : person;
     HtmlReport page = report::sitePage(words()("school-teaching.curves", shown), lookerOf(v));
     page.link("/people/" + person, words()("school-teaching.back-to-work"));
-    const std::map<Key, Group> groups = groupsOf(*seen);
+    const std::map<GroupKey, Group> groups = groupsOf(*seen);
     if (groups.empty()) page.paragraph(words()("class.no-results"), Tone::missing);
     for (const auto& [key, group] : groups) {
         page.heading(group.exercise);

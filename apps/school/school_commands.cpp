@@ -37,10 +37,6 @@ void addBooksOptions(cli::Command& command, BooksOptions& o) {
     command.option("--database", o.database, "postgresql://... instead of SQLite in the folder");
 }
 /// Who sits at the server's machine.
-Act now() {
-    return {"server", school_server::systemClock()()};
-}
-
 void offerCode(const BooksOptions& o) {
     const SchoolSettings place = placeOfBooks(o.data, o.database);
     Books books(place.data, place.database);

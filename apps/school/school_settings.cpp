@@ -14,6 +14,7 @@
 #include "handpiece/base/config/table.h"
 #include "handpiece/base/core/error.h"
 #include "handpiece/base/core/file.h"
+#include "school/server.h"
 
 namespace handpiece::school_cli {
 namespace {
@@ -133,6 +134,10 @@ SchoolSettings placeOfBooks(const std::string& data, const std::string& database
     if (place.database.empty() && access((place.data + "/books.db").c_str(), F_OK) != 0)
         std::fprintf(stderr, "there was no school in %s: this begins a new one\n", place.data.c_str());
     return place;
+}
+
+school::Act now() {
+    return {"server", school_server::systemClock()()};
 }
 
 }  // namespace handpiece::school_cli

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "handpiece/school/store/books.h"
+
 namespace handpiece::school_cli {
 
 /// What was given; empty: not.
@@ -40,5 +42,8 @@ using Environment = std::function<const char*(const char*)>;
 /// Of this process, for a command that opens the books: data and database are not empty where they have to be.
 /// Throws as settled(), and for root where the folder is another's: what root makes there its server cannot use.
 [[nodiscard]] SchoolSettings placeOfBooks(const std::string& data, const std::string& database);
+
+/// Of a command on the server's machine, at this moment.
+[[nodiscard]] school::Act now();
 
 }  // namespace handpiece::school_cli

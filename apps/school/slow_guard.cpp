@@ -23,7 +23,7 @@
 namespace handpiece::school_server {
 namespace {
 
-struct Address {
+struct SocketAddress {
     int family = AF_UNSPEC, port = -1;
     std::string host{};  ///< its bytes; empty: any of this machine
     sockaddr_storage whole{};
@@ -32,8 +32,8 @@ struct Address {
 
 using Name = int (*)(int, sockaddr*, socklen_t*);
 /// None where it is no socket of this kind, or not connected.
-std::optional<Address> addressBy(Name name, int fd) {
-    Address got;
+std::optional<SocketAddress> addressBy(Name name, int fd) {
+    SocketAddress got;
     if (name(fd, reinterpret_cast<sockaddr*>(&got.whole), &got.size) != 0) return {};
     const auto set = [&](std::uint16_t port, const auto& numbers) {
         const std::string bytes(reinterpret_cast<const char*>(&numbers), sizeof numbers);
@@ -53,7 +53,7 @@ std::optional<Address> addressBy(Name name, int fd) {
 }
 
 /// "address port", as the HTTP library writes them; empty: it has none.
-std::string remoteOf(const Address& address) {
+std::string remoteOf(const SocketAddress& address) {
     char host[NI_MAXHOST], service[NI_MAXSERV];
     if (getnameinfo(reinterpret_cast<const sockaddr*>(&address.whole), address.size, host, sizeof host, service,
                     sizeof service, NI_NUMERICHOST | NI_NUMERICSERV) != 0)
@@ -62,7 +62,7 @@ std::string remoteOf(const Address& address) {
 }
 
 /// What counts as one address: of IPv6 its network, for who has one of these has 2^64 of the others.
-std::string sourceOf(const Address& address) {
+std::string sourceOf(const SocketAddress& address) {
     constexpr std::string_view kFourInSix("\0\0\0\0\0\0\0\0\0\0\xff\xff", 12);
     if (address.host.starts_with(kFourInSix)) return address.host.substr(kFourInSix.size());
     return address.family == AF_INET6 ? "six " + address.host.substr(0, 8) : address.host;
@@ -88,7 +88,7 @@ class SlowGuard::Sight {
     Sight& operator=(const Sight&) = delete;
 
     /// The connections that came by this socket, and who is at the other end.
-    void each(const std::function<void(int fd, const Address& other)>& look) {
+    void each(const std::function<void(int fd, const SocketAddress& other)>& look) {
         if (folder_ == nullptr || held_ < 0 || !here_) return;
         const std::lock_guard lock(mutex_);
         rewinddir(folder_);
@@ -112,7 +112,7 @@ class SlowGuard::Sight {
                (here_->host.empty() || own->host == here_->host);
     }
 
-    const std::optional<Address> here_;
+    const std::optional<SocketAddress> here_;
     DIR* const folder_;
     const int nothing_, held_;
     std::mutex mutex_;
@@ -144,7 +144,7 @@ void SlowGuard::admit(const std::string& remote, std::uint64_t bytes) {
 }
 
 void SlowGuard::hearNoMore(const std::string& remote) {
-    sight_->each([&](int fd, const Address& other) {
+    sight_->each([&](int fd, const SocketAddress& other) {
         if (remoteOf(other) == remote) shutdown(fd, SHUT_RD);
     });
 }
@@ -168,7 +168,7 @@ void SlowGuard::watch() {
 void SlowGuard::look(std::chrono::steady_clock::time_point now) {
     std::map<std::uint64_t, Watched> there;
     std::vector<Seen> seen;
-    sight_->each([&](int fd, const Address& other) {
+    sight_->each([&](int fd, const SocketAddress& other) {
         tcp_info info{};
         socklen_t size = sizeof info;
         struct stat file {};
@@ -202,7 +202,7 @@ void SlowGuard::look(std::chrono::steady_clock::time_point now) {
     // Of connections that are gone.
     admitted_.clear();
     if (const std::set<std::uint64_t> many = tooMany(seen); !many.empty())
-        sight_->each([&](int fd, const Address&) {
+        sight_->each([&](int fd, const SocketAddress&) {
             struct stat file {};
             if (fstat(fd, &file) != 0 || many.count(file.st_ino) == 0) return;
             shutdown(fd, SHUT_RDWR);

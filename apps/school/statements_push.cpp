@@ -44,9 +44,9 @@ class Reached {
     Json all_ = Json::object();
 };
 
-class Pusher {
+class StatementPusher {
   public:
-    Pusher(const RecordStore& to) : address_(to.address) {
+    StatementPusher(const RecordStore& to) : address_(to.address) {
         while (address_.ends_with('/'))
             address_.pop_back();
         address_ += "/statements";
@@ -99,7 +99,7 @@ PushedStatements pushStatements(const school::Store& store, const statements::Ac
     std::map<std::string, std::string> titles;
     for (const school::Exercise& exercise : store.exercises())
         titles[exercise.id] = exercise.title;
-    Pusher pusher(to);
+    StatementPusher pusher(to);
     constexpr std::size_t kSome = 20;
     for (auto some = store.outbox(reached.sequence(), kSome); !some.empty();
          some = store.outbox(reached.sequence(), kSome)) {

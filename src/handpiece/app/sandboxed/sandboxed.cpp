@@ -94,7 +94,7 @@ class Said {
     Json json_;
 };
 
-std::string dumped(const Json& json) {
+std::string oneLine(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -114,7 +114,7 @@ sandbox::Answer asked(const char* work, Json request, const Files& files, const 
         readable.push_back(core::wholePath(one));
     request["work"] = work, request["language"] = config::words().language();
     request["sessions"] = sessions, request["exercise"] = exercise.string();
-    return sandbox::ask(dumped(request), readable, bounds, progress);
+    return sandbox::ask(oneLine(request), readable, bounds, progress);
 }
 
 /// A recording of half an hour has some 30 MB [R] (docs/session-format.md) and is cut again in minutes.
@@ -221,26 +221,26 @@ std::string questionOf(const school::PushedAttempt& pushed, const std::string& r
                     {"max_score", a.maxScore},
                     {"passed", a.passed}}}};
     if (exam) question["exam"] = {{"locked", exam->locked}, {"entries", exam->entries}};
-    return dumped(question);
+    return oneLine(question);
 }
 
 std::string toJson(const Proof& proof) {
     const school::Score& s = proof.score;
-    return dumped({{"state", s.state},
-                   {"reason", s.reason},
-                   {"state_hash", s.stateHash},
-                   {"score", s.score},
-                   {"max_score", s.maxScore},
-                   {"whole_score", s.wholeScore},
-                   {"passed", s.passed},
-                   {"borderline", s.borderline},
-                   {"result", s.result},
-                   {"contents", proof.contents.inputs},
-                   {"sketches", proof.contents.sketches},
-                   {"doubts", proof.doubts}});
+    return oneLine({{"state", s.state},
+                    {"reason", s.reason},
+                    {"state_hash", s.stateHash},
+                    {"score", s.score},
+                    {"max_score", s.maxScore},
+                    {"whole_score", s.wholeScore},
+                    {"passed", s.passed},
+                    {"borderline", s.borderline},
+                    {"result", s.result},
+                    {"contents", proof.contents.inputs},
+                    {"sketches", proof.contents.sketches},
+                    {"doubts", proof.doubts}});
 }
 std::string toJson(const Contents& contents) {
-    return dumped({{"contents", contents.inputs}, {"sketches", contents.sketches}});
+    return oneLine({{"contents", contents.inputs}, {"sketches", contents.sketches}});
 }
 
 Proof proofFrom(const std::string& json, std::size_t sessions) {

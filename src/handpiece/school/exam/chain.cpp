@@ -11,7 +11,7 @@
 namespace handpiece::exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam record 2", kFirstKind = "handpiece exam record 1";
+constexpr std::string_view kRecordKind = "handpiece exam record 2", kFirstRecordKind = "handpiece exam record 1";
 constexpr std::int64_t kMost = std::int64_t{1} << 53;
 /// A checkpoint is due every half minute.
 constexpr Milliseconds kSilentMs = 120'000, kGraceMs = 120'000, kClockMs = 120'000;
@@ -24,7 +24,7 @@ std::string secondsOf(Milliseconds ms) {
 }  // namespace
 
 std::string toText(const Entry& e) {
-    LineWriter lines(e.format == 1 ? kFirstKind : kKind);
+    LineWriter lines(e.format == 1 ? kFirstRecordKind : kRecordKind);
     const auto confirmed = [&] {
         if (e.format != 1) lines.add("confirmation", e.confirmation.empty() ? "-" : e.confirmation);
     };
@@ -50,8 +50,8 @@ std::string toText(const Entry& e) {
 }
 
 Entry entryFrom(std::string_view text, const std::string& where) {
-    const bool isFirst = isOfKind(text, kFirstKind);
-    LineReader lines(text, isFirst ? kFirstKind : kKind, where);
+    const bool isFirst = isOfKind(text, kFirstRecordKind);
+    LineReader lines(text, isFirst ? kFirstRecordKind : kRecordKind, where);
     Entry e;
     e.format = isFirst ? 1 : 2;
     const auto readConfirmation = [&] {

@@ -16,7 +16,7 @@
 namespace handpiece::exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam pack 2", kFirstKind = "handpiece exam pack 1";
+constexpr std::string_view kPackKind = "handpiece exam pack 2", kFirstPackKind = "handpiece exam pack 1";
 constexpr std::int64_t kMostMs = 4'102'444'800'000;  // 2100
 constexpr std::size_t kMostCandidates = 2000, kMostHash = 128;
 
@@ -46,7 +46,7 @@ std::string toText(Pack p) {
     std::sort(p.invigilators.begin(), p.invigilators.end(),
               [](const Invigilator& a, const Invigilator& b) { return a.person < b.person; });
     const bool isFirst = p.format == 1;
-    LineWriter lines(isFirst ? kFirstKind : kKind);
+    LineWriter lines(isFirst ? kFirstPackKind : kPackKind);
     lines.add("exam", p.exam).add("version", p.version).add("title", p.title).add("exercise", p.exercise);
     lines.add("file", p.file).add("bytes", p.bytes).add("rubric", p.rubric).add("rubric_format", p.rubricFormat);
     lines.add("engine", p.engine).add("opens_ms", p.opens).add("closes_ms", p.closes).add("minutes", p.minutes);
@@ -66,8 +66,8 @@ std::string toText(Pack p) {
 }
 
 Pack packFrom(std::string_view text, const std::string& where) {
-    const bool isFirst = isOfKind(text, kFirstKind);
-    LineReader lines(text, isFirst ? kFirstKind : kKind, where);
+    const bool isFirst = isOfKind(text, kFirstPackKind);
+    LineReader lines(text, isFirst ? kFirstPackKind : kPackKind, where);
     Pack p;
     p.format = isFirst ? 1 : 2;
     p.exam = lines.code("exam");

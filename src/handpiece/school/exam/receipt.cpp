@@ -10,15 +10,15 @@
 namespace handpiece::exam {
 namespace {
 
-constexpr std::string_view kKind = "handpiece exam receipt 1";
-constexpr std::int64_t kMost = std::int64_t{1} << 53;
+constexpr std::string_view kReceiptKind = "handpiece exam receipt 1";
+constexpr std::int64_t kLatestMs = std::int64_t{1} << 53;
 constexpr std::array<std::string_view, 3> kStates = {"waiting", "proven", "refused"};
 constexpr std::array<std::string_view, 4> kVerdicts = {"to be confirmed", "pass", "fail", "void"};
 
 }  // namespace
 
 std::string toText(const Receipt& r) {
-    LineWriter lines(kKind);
+    LineWriter lines(kReceiptKind);
     lines.add("sitting", r.sitting).add("exam", r.exam).add("candidate", r.candidate).add("station", r.station);
     lines.add("began_ms", r.began).add("finished_ms", r.finished).add("received_ms", r.received);
     lines.add("made_ms", r.made);
@@ -29,12 +29,12 @@ std::string toText(const Receipt& r) {
 }
 
 Receipt receiptFrom(std::string_view text, const std::string& where) {
-    LineReader lines(text, kKind, where);
+    LineReader lines(text, kReceiptKind, where);
     Receipt r;
     r.sitting = lines.hex("sitting", 32), r.exam = lines.code("exam"), r.candidate = lines.hex("candidate", 64);
     r.station = lines.hex("station", 32);
-    r.began = lines.whole("began_ms", 0, kMost), r.finished = lines.whole("finished_ms", 0, kMost);
-    r.received = lines.whole("received_ms", 0, kMost), r.made = lines.whole("made_ms", 0, kMost);
+    r.began = lines.whole("began_ms", 0, kLatestMs), r.finished = lines.whole("finished_ms", 0, kLatestMs);
+    r.received = lines.whole("received_ms", 0, kLatestMs), r.made = lines.whole("made_ms", 0, kLatestMs);
     while (lines.isNext("file"))
         r.files.push_back(lines.hex("file", 64));
     r.state = lines.text("state", 20);

@@ -5,6 +5,7 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
@@ -116,12 +117,15 @@ Option Command::option(const std::string& name, T& value, const std::string& hel
             return given.rfind("--", 0) == 0 ? fmt::format("its value is missing before {}", given) : std::string();
         },
         ""));
-    // CLI11 reads -1 as the largest number there is.
+    // CLI11 reads -1 as the largest number there is, and what is larger too.
     constexpr bool isUnsigned = std::is_same_v<T, std::size_t> || std::is_same_v<T, std::vector<std::size_t>>;
     if (isUnsigned)
         option->check(CLI::Validator(
             [](const std::string& given) {
-                return given.starts_with('-') ? fmt::format("{} is not 0 or more", given) : std::string();
+                if (given.starts_with('-')) return fmt::format("{} is not 0 or more", given);
+                std::size_t number = 0;
+                const auto [end, error] = std::from_chars(given.data(), given.data() + given.size(), number);
+                return error == std::errc::result_out_of_range ? fmt::format("{} is too large", given) : std::string();
             },
             ""));
     return Option(*option);

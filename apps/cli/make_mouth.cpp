@@ -103,7 +103,9 @@ void addMakeMouthCommand(Command& make) {
                  "FDI:SURFACE:DEPTH,...: caries and what else is found, as 46:mesial:D2,36:occlusal:filling; surfaces "
                  "and depths as in make tooth");
     mouth.flag("--cheeks", o.mouth.cheeks, "lips and cheeks too: felt, and held aside in pictures");
-    mouth.option("--threads", o.threads, "0: all; the mouth is the same at any number").showDefault();
+    mouth.option("--threads", o.threads, "0: all; the mouth is the same at any number")
+        .check(range(0, 1024))
+        .showDefault();
     mouth.flag("--json", o.json, "what was made, and where each tooth stands, for programs");
     mouth.footer(
         "Adjacent teeth and antagonists of the tooth can be cut too, the others are felt.\n"

@@ -77,9 +77,10 @@ class FoundColours {
     void add(double red, double green, double blue) {
         found_.push_back({static_cast<float>(red), static_cast<float>(green), static_cast<float>(blue)});
     }
-    /// On a scale to 1, 255 or 65535, whichever is the first that none is beyond, from `leastScale` on. Empty, and the
-    /// reason noted, where they cannot be believed.
-    [[nodiscard]] VertexColours settle(const Source& source, std::size_t vertices, double leastScale) const;
+    /// On a scale to 1, 255 or 65535, whichever is the first that none is beyond, from `leastScale` to `mostScale`; a
+    /// rounding error beyond 1 is 1. Empty, and the reason noted, where they cannot be believed.
+    [[nodiscard]] VertexColours settle(const Source& source, std::size_t vertices, double leastScale,
+                                       double mostScale = 65535.0) const;
 
   private:
     std::vector<std::array<float, 3>> found_;

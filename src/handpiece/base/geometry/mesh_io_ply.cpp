@@ -172,7 +172,7 @@ class Reader {
                         readProperty(element, i, p, [](double) {});
         }
         bad_.check(source_, "vertices", "vertex");
-        if (colours_ != nullptr) *colours_ = found_.settle(source_, mesh_.vertices.size(), leastScale_);
+        if (colours_ != nullptr) *colours_ = found_.settle(source_, mesh_.vertices.size(), leastScale_, mostScale_);
         if (highest_ > mesh_.vertices.size())
             source_.fail(
                 fmt::format("face {} names vertex {} of {}", highestFace_ + 1, highest_, mesh_.vertices.size()),
@@ -264,6 +264,11 @@ class Reader {
             // A whole 1 is nearly black, and a fraction of 1 is white.
             const bool isWhole = typeOf(0) != Type::float32 && typeOf(0) != Type::float64;
             leastScale_ = isWhole ? 255.0 : 1.0;
+            if (typeOf(0) == Type::uint8) mostScale_ = 255.0;
+            if (typeOf(0) == Type::int8 || typeOf(0) == Type::int16) {
+                source_.note("the colours are left out: on what scale numbers with a sign are is not known");
+                continue;
+            }
             return channel;
         }
         return {-1, -1, -1};
@@ -282,8 +287,11 @@ class Reader {
         if (element.count > kMaxFaces * 3)
             source_.fail(fmt::format("{} vertices are more than are read", element.count));
         reserve(mesh_.vertices, element.count, source_.data.size());
+        const bool isText = header_.encoding == Encoding::ascii;
+        bool isLineEach = false;
         for (std::uint64_t i = 0; i < element.count; ++i) {
             core::Vec3 v = core::Vec3::Zero(), colour = core::Vec3::Zero();
+            const std::string_view text = body_.rest();
             for (std::size_t k = 0; k < element.properties.size(); ++k)
                 readProperty(element, i, element.properties[k], [&](double value) {
                     for (int a = 0; a < 3; ++a) {
@@ -291,6 +299,16 @@ class Reader {
                         if (channel[static_cast<std::size_t>(a)] == static_cast<std::ptrdiff_t>(k)) colour[a] = value;
                     }
                 });
+            if (isText) {
+                // One value too few, and all that follows would shift by one.
+                const std::string_view taken = text.substr(0, text.size() - body_.rest().size());
+                const bool isSeveral =
+                    taken.find_first_of("\r\n", taken.find_first_not_of(" \t\r\n\v\f")) != taken.npos;
+                if (i == 0) isLineEach = !isSeveral;
+                if (isLineEach && isSeveral)
+                    source_.fail(fmt::format("the line of vertex {} has too few values", i + 1),
+                                 "export the mesh again");
+            }
             if (channel[0] >= 0) found_.add(colour.x(), colour.y(), colour.z());
             if (!isCoordinate(v.x()) || !isCoordinate(v.y()) || !isCoordinate(v.z())) bad_.add(mesh_.vertices.size());
             mesh_.vertices.push_back(v);
@@ -338,7 +356,7 @@ class Reader {
     BadCoordinates bad_;
     VertexColours* colours_;
     FoundColours found_;
-    double leastScale_ = 1.0;
+    double leastScale_ = 1.0, mostScale_ = 65535.0;
     std::uint64_t highest_ = 0, highestFace_ = 0, noFaces_ = 0;
 };
 

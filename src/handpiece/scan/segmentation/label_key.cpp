@@ -333,37 +333,48 @@ LabelKey labelKeyOf(const volume::Labels& labels, const std::vector<volume::Labe
 
 namespace {
 
-/// How often each number is there, where all are whole ones, few, and most are 0: grey values have no such gaps.
-std::optional<std::array<std::size_t, 256>> fewNumbers(const volume::Volume& volume) {
+/// How often each number is there, where few and most are 0: grey values have no such gaps. `odd`: those that are no
+/// whole ones from 0 to 255; none where they are an eighth of what is not 0.
+std::optional<std::array<std::size_t, 256>> fewNumbers(const volume::Volume& volume, std::size_t& odd) {
     constexpr int kMostNumbers = 100;
     std::array<std::size_t, 256> counts{};
     int numbers = 0;
+    odd = 0;
     for (const float v : volume.values) {
-        if (!(v >= 0.0f && v <= 255.0f && v == std::floor(v))) return std::nullopt;
+        if (!(v >= 0.0f && v <= 255.0f && v == std::floor(v))) {
+            if (++odd > volume.values.size() / 8) return std::nullopt;
+            continue;
+        }
         if (counts[static_cast<std::size_t>(v)]++ == 0 && ++numbers > kMostNumbers) return std::nullopt;
     }
-    return counts[0] < volume.values.size() / 3 ? std::nullopt : std::optional(counts);
+    if (counts[0] < volume.values.size() / 3 || odd > (volume.values.size() - counts[0]) / 8) return std::nullopt;
+    return counts;
 }
 
 }  // namespace
 
 int unsaidLabels(const volume::Volume& volume, const std::vector<volume::LabelName>& names) {
-    // Fewer may be a scan of two or three grey values, a mask for instance; numbers of teeth end at 85.
+    // Fewer may be a scan of two or three grey values, a mask for instance; numbers of teeth end at 85, but for one
+    // that somebody wrote wrongly.
     constexpr int kFewest = 6, kHighest = 85;
-    const auto counts = fewNumbers(volume);
+    std::size_t odd = 0;
+    const auto counts = fewNumbers(volume, odd);
     if (!counts) return 0;
-    int numbers = 0;
+    int numbers = 0, teeth = 0, beyond = odd > 0 ? 1 : 0;
     for (int n = 1; n < 256; ++n) {
         if ((*counts)[static_cast<std::size_t>(n)] == 0) continue;
-        if (n > kHighest) return 0;
         ++numbers;
+        teeth += isFdi(n) ? 1 : 0;
+        beyond += n > kHighest ? 1 : 0;
     }
+    if (beyond > 0 && (teeth < kFewest || 4 * (numbers + (odd > 0 ? 1 : 0) - teeth) > teeth)) return 0;
     return numbers >= (names.empty() ? kFewest : 1) ? numbers : 0;
 }
 
 bool looksLikeMouth(const volume::Volume& volume, const std::vector<volume::LabelName>& names) {
-    const auto few = fewNumbers(volume);
-    if (!few) return false;
+    std::size_t unclear = 0;
+    const auto few = fewNumbers(volume, unclear);
+    if (!few || unclear > 0) return false;
     const std::array<std::size_t, 256>& counts = *few;
     bool isGroup = false;
     const auto isNamed = [&](int n) {

@@ -33,14 +33,9 @@ struct CloseEntry {
 
 }  // namespace
 
-Input::Input(const fs::path& path) : file_(std::fopen(path.string().c_str(), "rb")), where_(path.string()) {
-    if (!file_)
-        throw core::Error(fmt::format("cannot be read: {}", std::strerror(errno)), where_, "check its permissions")
-            .as("not-readable", {std::strerror(errno)});
+Input::Input(const fs::path& path) : file_(core::openFile(path)), where_(path.string()) {
     std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // the window below does that
-    std::error_code ec;
-    size_ = fs::file_size(path, ec);
-    if (ec) throw core::Error("this is no file that can be read", where_, "name a file");
+    size_ = core::sizeOf(file_);
 }
 
 Input::Input(std::shared_ptr<const std::vector<std::byte>> data, std::string where)

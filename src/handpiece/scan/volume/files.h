@@ -14,6 +14,8 @@
 #include <string_view>
 #include <vector>
 
+#include "handpiece/base/core/file.h"
+
 namespace handpiece::volume {
 
 /// One file, on disk or in memory, read at any place. Not for several threads at once.
@@ -30,10 +32,7 @@ class Input {
     [[nodiscard]] std::size_t readAt(std::uint64_t at, void* to, std::size_t count);
 
   private:
-    struct Close {
-        void operator()(std::FILE* f) const noexcept { std::fclose(f); }
-    };
-    std::unique_ptr<std::FILE, Close> file_;
+    core::FileStream file_;
     std::shared_ptr<const std::vector<std::byte>> memory_;
     std::string where_;
     std::uint64_t size_ = 0, windowAt_ = 0;

@@ -24,7 +24,7 @@ void requireSound(const school::Roster& roster) {
     }
 }
 
-std::vector<std::byte> bytesOf(std::string_view text) {
+std::vector<std::byte> asBytes(std::string_view text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
 }
@@ -36,12 +36,12 @@ school::Roster oneRoster(std::string_view text) {
     std::string manifest = "propertyName,value\noneroster.version,1.1\n";
     for (std::size_t at = 0, i = 0; i < 4; ++i) {
         const std::size_t end = std::min(text.find('\x01', at), text.size());
-        files[names[i]] = bytesOf(text.substr(at, end - at));
+        files[names[i]] = asBytes(text.substr(at, end - at));
         at = std::min(end + 1, text.size());
         const std::string name = std::string(names[i]).substr(0, std::string(names[i]).size() - 4);
         if (!files[names[i]].empty()) manifest += "file." + name + (isDelta ? ",delta\n" : ",bulk\n");
     }
-    files["manifest.csv"] = bytesOf(manifest);
+    files["manifest.csv"] = asBytes(manifest);
     return school::oneRoster(files, "x", "2026-11-27");
 }
 

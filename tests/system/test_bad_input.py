@@ -180,6 +180,8 @@ class BadInput(SystemTest):
         out = self.folder / "t"
         for option, arguments in (("--faces", ["make", "mouth", "--faces", "-5", "--out", out]),
                                   ("--seed", ["make", "tooth", "--seed", "-1", "--out", out]),
+                                  ("--seed", ["make", "tooth", "--seed", "18446744073709551616", "--out", out]),
+                                  ("--threads", ["make", "mouth", "--threads", "100000", "--out", out]),
                                   ("--threads", ["scan", "case", self.tooth, "--threads", "-1", "--out", out]),
                                   ("--faces", ["scan", "case", self.tooth, "--faces", "-1", "--out", out])):
             with self.subTest(arguments=arguments):
@@ -316,6 +318,13 @@ class BadInput(SystemTest):
             self.probe_refused(pose_file=path, mentions=["not a plain file"])
             self.refused("replay", path, mentions=["not a plain file"])
             self.run_refused("--motion", "plunge", "--tissues", path, mentions=["not a plain file"])
+        os.mkfifo(self.folder / "pipe")
+        (self.folder / "pipe.mtl").write_text("newmtl a\nmap_Kd pipe\n")
+        painted = self.folder / "painted.obj"
+        painted.write_text("mtllib pipe.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nusemtl a\n"
+                           "f 1/1 3/2 2/1\nf 1/1 2/1 4/2\nf 1/1 4/2 3/2\nf 2/1 3/2 4/2\n")
+        done = self.ok("mesh", "info", painted)
+        self.assertIn("not a plain file", done.stdout + done.stderr)
         case = self.folder / "case"
         case.mkdir()
         os.mkfifo(case / "case.toml")

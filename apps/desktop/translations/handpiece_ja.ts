@@ -4100,6 +4100,14 @@
         <translation>保護部位の切削：%1 mm³</translation>
     </message>
     <message>
+        <source>Target: –</source>
+        <translation>目標：–</translation>
+    </message>
+    <message>
+        <source>Being worked out</source>
+        <translation>計算中</translation>
+    </message>
+    <message>
         <source>Nothing beside the target</source>
         <translation>目標の外は切削なし</translation>
     </message>

@@ -163,6 +163,30 @@ TEST(MeshColours, WhatCannotBeBelievedIsLeftOutAndToldAndTheSurfaceIsRead) {
     EXPECT_THAT(notes[0], HasSubstr("all vertices have the same"));
 }
 
+TEST(MeshColours, WhatIsBeyondItsTypeOrItsLineIsTold) {
+    const auto of = [](const char* type) {
+        return fmt::format("{}property {} red\nproperty {} green\nproperty {} blue\n", kXyz, type, type, type);
+    };
+    // Rounded up a little: not a scale to 255, on which all would be black.
+    EXPECT_THAT(
+        fromText(ply(of("float"), {"0 0 0 1.0001 0 0", "1 0 0 0 1 0", "0 1 0 0 0 1", "0 0 1 0.502 0.502 0.502"}))
+            .colours,
+        ElementsAre(kRed, kGreen, kBlue, kGrey));
+    for (const auto& [type, reason] : {std::pair{"uchar", "beyond any scale"}, {"char", "with a sign"}}) {
+        ReadNotes notes;
+        EXPECT_THAT(
+            fromText(ply(of(type), {"0 0 0 300 0 0", "1 0 0 0 1 0", "0 1 0 0 0 1", "0 0 1 9 9 9"}), &notes).colours,
+            IsEmpty());
+        ASSERT_EQ(notes.size(), 1u);
+        EXPECT_THAT(notes[0], HasSubstr(reason));
+    }
+    // Without its blue, the next line's x would be it.
+    EXPECT_THAT(test::errorOf([&] {
+                    (void)fromText(ply(of("uchar"), {"0 0 0 9 0 0", "1 0 0 0 1", "0 1 0 0 0 1", "0 0 1 9 9 9"}));
+                }),
+                HasSubstr("the line of vertex 2 has too few values"));
+}
+
 TEST(MeshColours, TwoChannelsOrNoneOfVerticesAreNone) {
     ReadNotes notes;
     EXPECT_THAT(fromText(ply(std::string(kXyz) + "property uchar red\nproperty uchar green\n",

@@ -88,6 +88,14 @@ TEST(LabelKey, LabelsOfWhichNobodySaidSo) {
     v.values[3] = 1.0f;
     EXPECT_EQ(unsaidLabels(v, {}), 0) << "a mask";
     EXPECT_EQ(unsaidLabels(v, {{1, "Segment_1"}}), 1);
+    // A mouth's teeth with one number wrong.
+    v.values.assign(100, 0.0f);
+    for (int n = 11; n <= 18; ++n)
+        v.values[static_cast<std::size_t>(n)] = static_cast<float>(n);
+    v.values[1] = 99.0f;
+    EXPECT_EQ(unsaidLabels(v, {}), 9);
+    v.values[1] = 46.5f;
+    EXPECT_EQ(unsaidLabels(v, {}), 8);
 }
 
 TEST(LabelKey, FdiNumbersWithWhatToothFairyHasBesideThem) {

@@ -49,7 +49,6 @@ ExercisePanel::ExercisePanel(QWidget* parent) : QWidget(parent) {
     target_ = named(new QProgressBar(live_), "exerciseTarget", tr("Removed of the target"));
     target_->setRange(0, 100);
     target_->setMinimumWidth(80);
-    target_->setFormat(tr("Target: %p %"));
     live->addWidget(target_);
     beyond_ = note({}, live_, "exerciseBeyond");
     live->addWidget(beyond_);
@@ -123,7 +122,11 @@ void ExercisePanel::setShares(const LiveShares* shares) {
         line(tr("Beyond it: %1 mm³"), shares->beyondMm3);
         line(tr("Protected, and cut: %1 mm³"), shares->protectedMm3);
     }
-    beyond_->setText(lines.isEmpty() ? tr("Nothing beside the target") : lines.join(QLatin1Char('\n')));
+    // A tooth's target takes a while to be laid on, and longer on a busy machine: until then nothing is known.
+    target_->setFormat(shares ? tr("Target: %p %") : tr("Target: –"));
+    beyond_->setText(!shares           ? tr("Being worked out")
+                     : lines.isEmpty() ? tr("Nothing beside the target")
+                                       : lines.join(QLatin1Char('\n')));
 }
 
 void ExercisePanel::setValues(const std::vector<course::LiveValue>& values, const rubric::Rubric& rubric) {

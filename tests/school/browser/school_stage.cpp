@@ -6,6 +6,7 @@
 #include "school/server/exam_stage.h"
 #include "school/server/pages_fixture.h"
 #include "school/server/small_picture.h"
+#include "school/worker.h"
 
 namespace handpiece::school_server {
 namespace {

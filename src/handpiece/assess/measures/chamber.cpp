@@ -47,13 +47,14 @@ Vec3 canalWay(const tooth::ToothModel& whole, const Vec3& orifice, const DrawFra
             }
         if (count == 0) break;
         const Vec3 next = sum / count;
-        // A section of the funnel opens towards the chamber: its middle leans there.
-        if (deep > kFunnelMm) {
-            if (!middles.empty()) step = next - middles.back();
-            middles.push_back(next);
-        }
+        if (deep > kFunnelMm + kSectionMm) step = next - centre;
+        middles.push_back(next);
         centre = next;
     }
+    // A section of the funnel opens towards the chamber, and its middle leans there: where the canal goes on it does
+    // not count.
+    constexpr auto kInFunnel = static_cast<std::ptrdiff_t>(kFunnelMm / kSectionMm);
+    if (middles.size() >= kInFunnel + 2 * kLeastMiddles) middles.erase(middles.begin(), middles.begin() + kInFunnel);
     if (middles.size() < kLeastMiddles) return frame.w;
     // Least squares over the depth.
     double depth = 0.0;

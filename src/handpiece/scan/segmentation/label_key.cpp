@@ -360,14 +360,16 @@ int unsaidLabels(const volume::Volume& volume, const std::vector<volume::LabelNa
     std::size_t odd = 0;
     const auto counts = fewNumbers(volume, odd);
     if (!counts) return 0;
-    int numbers = 0, teeth = 0, beyond = odd > 0 ? 1 : 0;
+    int numbers = 0, teeth = 0;
+    bool isBeyond = odd > 0;
     for (int n = 1; n < 256; ++n) {
         if ((*counts)[static_cast<std::size_t>(n)] == 0) continue;
         ++numbers;
         teeth += isFdi(n) ? 1 : 0;
-        beyond += n > kHighest ? 1 : 0;
+        isBeyond = isBeyond || n > kHighest;
     }
-    if (beyond > 0 && (teeth < kFewest || 4 * (numbers + (odd > 0 ? 1 : 0) - teeth) > teeth)) return 0;
+    const int others = numbers - teeth + (odd > 0 ? 1 : 0);
+    if (isBeyond && (teeth < kFewest || 4 * others > teeth)) return 0;
     return numbers >= (names.empty() ? kFewest : 1) ? numbers : 0;
 }
 
